@@ -16,10 +16,6 @@ pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)  # libxxhash-dev
 pkg_check_modules(hwy REQUIRED IMPORTED_TARGET libhwy)  # libhwy-dev
 find_package(assimp QUIET)             # libassimp-dev, optional: mesh formats without a reader of our own
 find_package(benchmark QUIET)           # libbenchmark-dev, optional: bench/
-find_package(embree 4 QUIET)            # libembree-dev, optional: what `kdray bench` compares with; version 4 or 3
-if(NOT embree_FOUND)
-  find_package(embree 3 QUIET)
-endif()
 # Optional: libboost-dev (Beast and Asio, headers alone) with libturbojpeg0-dev for `kdray view`, which says what is missing;
 # libturbojpeg0-dev alone for JPEG pictures on surfaces.
 find_package(Boost 1.74 QUIET)

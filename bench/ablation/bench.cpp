@@ -16,7 +16,7 @@
 #include "api/statistics_json.h"
 #include "base/error.h"
 #include "base/timer.h"
-#include "scene/generate/built_in.h"
+#include "bench/workload/scenes.h"
 
 namespace kdray::bench {
 
@@ -42,7 +42,7 @@ class AblationScene {
   AblationScene(const AblationOptions& options, const std::string& name)
       : options_(options),
         name_(name),
-        scene_(Scene(generate::load_scene(name)), {.binary_form = false}),
+        scene_(Scene(load_scene(name)), {.binary_form = false}),
         renderer_(api::make_renderer(scene_, {.device = options.device}, {.build_options = unheard_of()})) {}
 
   AblationRun run() {

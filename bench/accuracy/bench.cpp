@@ -14,7 +14,7 @@
 #include "bench/measure/cores.h"
 #include "bench/povray/pov_writer.h"
 #include "bench/povray/povray.h"
-#include "scene/generate/built_in.h"
+#include "bench/workload/scenes.h"
 
 namespace kdray::bench {
 
@@ -28,7 +28,7 @@ class AccuracyScene {
       : options_(options),
         calls_(calls),
         exact_(exact_scene(name)),
-        scene_(exact_ ? exact_->scene : generate::load_scene(name)) {
+        scene_(exact_ ? exact_->scene : load_scene(name)) {
     run_.scene = name;
   }
 

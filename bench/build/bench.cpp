@@ -16,7 +16,7 @@
 #include "bench/race/kdray_contestants.h"
 #include "bench/race/race.h"
 #include "bench/workload/rays.h"
-#include "scene/generate/built_in.h"
+#include "bench/workload/scenes.h"
 
 namespace kdray::bench {
 
@@ -25,10 +25,7 @@ namespace {
 class BuildScene {
  public:
   BuildScene(const BuildOptions& options, const std::string& name)
-      : options_(options),
-        name_(name),
-        scene_(generate::load_scene(name)),
-        geometry_(scene::make_geometry(scene_)) {
+      : options_(options), name_(name), scene_(load_scene(name)), geometry_(scene::make_geometry(scene_)) {
     if (geometry_.size() == 0)
       throw Error(ErrorCode::input, name + ": nothing to build a tree of; the scene is empty");
     builders_ = quality_builders(geometry_.size());
@@ -52,10 +49,11 @@ class BuildScene {
       run.builders.push_back({b.name, {}, {}, {}});
       builds.push_back([this, &b] { return time_build(scene_, geometry_, b.config); });
     }
-    if (TimedBuild embree = options_.embree ? embree_build(scene_, geometry_) : TimedBuild{}) {
-      run.builders.push_back({kEmbreeBuilder, {}, {}, {}});
-      builds.push_back(std::move(embree));
-    }
+    if (options_.embree)
+      for (EmbreeBuild& embree : embree_builds(scene_, geometry_)) {
+        run.builders.push_back({embree.name, {}, {}, {}});
+        builds.push_back(std::move(embree.build));
+      }
     const std::vector<BuildSpreads> seconds = race_builds(builds, options_.repeat);
     for (std::size_t i = 0; i < seconds.size(); ++i) run.builders[i].seconds = seconds[i];
   }
@@ -95,8 +93,8 @@ class BuildScene {
       const std::vector<Hit> hits = reference.trace(c.rays, c.any_hit, 1, Traversal::binary);
       const std::vector<Outcome> outcomes = race(c, hits, contestants, options_.repeat);
       for (BuilderResult& b : run.builders) {
-        const Outcome* const o = b.builder == kEmbreeBuilder ? best_of(outcomes, Family::embree_fast)
-                                                             : find(outcomes, Family::kdray, b.builder);
+        const Outcome* const o =
+            b.tree ? find(outcomes, Family::kdray, b.builder) : best_of(outcomes, Family::embree_fast);
         b.traces.push_back({c.name, c.rays.size(), o->seconds, o->n_not_identical});
       }
     }
@@ -120,9 +118,11 @@ double BuilderResult::trace_seconds() const {
 }
 
 const BuilderResult* BuildRun::embree() const {
+  const BuilderResult* fastest = nullptr;
   for (const BuilderResult& b : builders)
-    if (b.builder == kEmbreeBuilder) return &b;
-  return nullptr;
+    if (!b.tree && (fastest == nullptr || b.seconds.total.median < fastest->seconds.total.median))
+      fastest = &b;
+  return fastest;
 }
 
 std::span<const std::string> build_classes() {

@@ -49,7 +49,7 @@ struct BuildRun {
   int cores = 0;
   std::vector<BuilderResult> builders;
 
-  const BuilderResult* embree() const;  // null without
+  const BuilderResult* embree() const;  // the fastest; null without
 };
 
 // `done` hears of every scene as soon as it has been measured, `working` what is being measured.
@@ -61,7 +61,5 @@ std::size_t count_not_identical(std::span<const BuildRun> runs);
 
 // The classes of rays that trees are compared on: primary, diffuse, random.
 std::span<const std::string> build_classes();
-
-inline constexpr const char* kEmbreeBuilder = "Embree medium";
 
 }  // namespace kdray::bench

@@ -10,7 +10,7 @@
 #include "bench/build/tree_facts.h"
 #include "bench/race/compare_hits.h"
 #include "bench/workload/rays.h"
-#include "scene/generate/built_in.h"
+#include "bench/workload/scenes.h"
 
 namespace kdray::bench {
 
@@ -26,10 +26,7 @@ struct Measured {
 class DepthScene {
  public:
   DepthScene(const DepthOptions& options, const std::string& name)
-      : options_(options),
-        name_(name),
-        scene_(generate::load_scene(name)),
-        geometry_(scene::make_geometry(scene_)) {
+      : options_(options), name_(name), scene_(load_scene(name)), geometry_(scene::make_geometry(scene_)) {
     if (geometry_.size() == 0)
       throw Error(ErrorCode::input, name + ": nothing to build a tree of; the scene is empty");
   }

@@ -33,10 +33,11 @@ GrowthResult measure_size(std::size_t n, const GrowthOptions& options) {
     builds.push_back([&scene, &geometry, &b] { return time_build(scene, geometry, b.config); });
     result.rows.push_back({b.name, {}, {}, duplication_of(geometry, b.config)});
   }
-  if (TimedBuild embree = options.embree ? embree_build(scene, geometry) : TimedBuild{}) {
-    builds.push_back(std::move(embree));
-    result.rows.push_back({kEmbreeBuilder, {}, {}, {}});
-  }
+  if (options.embree)
+    for (EmbreeBuild& embree : embree_builds(scene, geometry)) {
+      builds.push_back(std::move(embree.build));
+      result.rows.push_back({embree.name, {}, {}, {}});
+    }
   for (std::size_t i = 0; i < builds.size(); ++i)
     result.rows[i].peak_bytes = peak_bytes_of([&] { builds[i](); });
   const int rounds = n >= kLarge ? std::min(options.repeat, kRoundsOfLarge) : options.repeat;

@@ -102,7 +102,7 @@ std::string table_of(const BuildRun& run) {
 }
 
 Json json_of(std::span<const BuildRun> runs, const BuildOptions& options) {
-  const std::string embree = options.embree ? embree_version() : "";
+  const std::string embree = options.embree ? embree_versions() : "";
   Json json = {{"command", "bench build"},
                {"embree", embree.empty() ? Json() : Json(embree)},
                {"rays", options.rays},

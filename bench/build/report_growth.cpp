@@ -45,7 +45,7 @@ std::string table_of(const GrowthResult& result) {
 }
 
 Json json_of(std::span<const GrowthResult> results, const GrowthOptions& options) {
-  const std::string embree = options.embree ? embree_version() : "";
+  const std::string embree = options.embree ? embree_versions() : "";
   Json json = {{"command", "bench build --growth"},
                {"embree", embree.empty() ? Json() : Json(embree)},
                {"repeat", options.repeat},

@@ -10,8 +10,8 @@
 #include "base/write_file.h"
 #include "bench/embree/embree.h"
 #include "bench/measure/run_program.h"
+#include "bench/workload/scenes.h"
 #include "kdray/error.h"
-#include "scene/generate/built_in.h"
 
 namespace kdray::cli {
 
@@ -60,7 +60,8 @@ void say_working(const std::string& what) {
 }
 
 void say_without_embree() {
-  if (bench::embree_version().empty()) say("this kdray was built without Embree: its columns are left out");
+  if (bench::embree_versions().empty())
+    say("no Embree is found (Debian: libembree3-3; or KDRAY_EMBREE=FILE): its columns are left out");
 }
 
 void require_none(std::size_t n, const std::string& what) {
@@ -109,7 +110,7 @@ void add_report(CLI::App& app, std::string& report) {
 }
 
 void require_scenes(const std::vector<std::string>& scenes) {
-  for (const std::string& name : scenes) generate::require_scene(name);
+  for (const std::string& name : scenes) bench::require_scene(name);
 }
 
 }  // namespace kdray::cli

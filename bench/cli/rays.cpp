@@ -2,6 +2,9 @@
 // Shape   Tables go to stderr, each as soon as its scene is done; with --report DIR the figures go to
 //         DIR/rays.json and a plot beside it.
 // Errors  Hits that differ between kdray's traversals: exit code 1, after everything has been written.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <memory>
 #include <string>
 
@@ -13,6 +16,7 @@
 #include "bench/race/kdray_contestants.h"
 #include "bench/rays/bench.h"
 #include "bench/workload/rays.h"
+#include "bench/workload/scenes.h"
 
 namespace kdray::cli {
 
@@ -22,7 +26,13 @@ constexpr int kCoresMax = 4096;
 
 using RaysCommand = BenchCommand<bench::RaysOptions>;
 
+void say_missing_data() {
+  if (const auto missing = bench::data_scenes().missing; !missing.empty())
+    say(fmt::format("left out, since KDRAY_DATA names no folder that has them: {}", fmt::join(missing, " ")));
+}
+
 int run(const RaysCommand& c) {
+  if (c.options.scenes.empty()) say_missing_data();
   require_scenes(c.options.scenes);
   const auto runs = run_bench("rays", c.options, c.report, bench::bench_rays);
   require_none(bench::count_not_identical(runs),
@@ -45,7 +55,7 @@ Command add_bench_rays(CLI::App& bench) {
       bench.add_subcommand("rays", "The same rays through every traversal, and through Embree");
   const auto c = std::make_shared<RaysCommand>();
   bench::RaysOptions& o = c->options;
-  add_scenes(*app, o.scenes);
+  add_scenes(*app, o.scenes, fmt::format("{}", fmt::join(bench::default_scenes(), " ")));
   add_list(*app, "--classes", "Of rays (default: all)", bench::class_names(), o.classes);
   add_list(*app, "--traversals", "Ways through the tree (default: all)", bench::traversal_names(),
            o.traversals);

@@ -4,10 +4,10 @@
 #include <limits>
 #include <type_traits>
 
-#include "bench/embree/api.h"
+#include "bench/embree/query.h"
 #include "bench/workload/arrays.h"
 
-namespace kdray::bench {
+namespace kdray::bench::embree {
 
 // A form of tracing.
 struct RayForm {
@@ -16,31 +16,36 @@ struct RayForm {
 };
 
 template <unsigned N, bool any_hit>
-using Packed = std::conditional_t<any_hit, typename Packet<N>::AnyRay, typename Packet<N>::ClosestRay>;
+using Packed = std::conditional_t<any_hit, Rays<N>, RayHits<N>>;
 
 template <unsigned N>
-inline void put_ray(RTCRayN* rays, unsigned lane, const QuerySet& set, std::size_t i) {
-  RTCRayN_org_x(rays, N, lane) = set.origins[3 * i];
-  RTCRayN_org_y(rays, N, lane) = set.origins[3 * i + 1];
-  RTCRayN_org_z(rays, N, lane) = set.origins[3 * i + 2];
-  RTCRayN_dir_x(rays, N, lane) = set.directions[3 * i];
-  RTCRayN_dir_y(rays, N, lane) = set.directions[3 * i + 1];
-  RTCRayN_dir_z(rays, N, lane) = set.directions[3 * i + 2];
-  RTCRayN_tnear(rays, N, lane) = 0;
-  RTCRayN_tfar(rays, N, lane) = std::numeric_limits<float>::infinity();
-  RTCRayN_time(rays, N, lane) = 0;
-  RTCRayN_mask(rays, N, lane) = ~0u;
-  RTCRayN_id(rays, N, lane) = 0;
-  RTCRayN_flags(rays, N, lane) = 0;
+Rays<N>& rays_of(Rays<N>& packed) {
+  return packed;
+}
+template <unsigned N>
+Rays<N>& rays_of(RayHits<N>& packed) {
+  return packed.ray;
+}
+
+template <unsigned N>
+inline void put_ray(Rays<N>& rays, unsigned lane, const QuerySet& set, std::size_t i) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    rays.origin[k][lane] = set.origins[3 * i + k];
+    rays.direction[k][lane] = set.directions[3 * i + k];
+  }
+  rays.t_near[lane] = rays.time[lane] = 0;
+  rays.t_far[lane] = std::numeric_limits<float>::infinity();
+  rays.mask[lane] = ~0u;
+  rays.id[lane] = rays.flags[lane] = 0;
 }
 
 // Traces rays [first, end) of the set, N at a time: prepare(rays, lane, i) may add to ray i, and take(packed,
 // lane, i) finds what became of it.
 template <unsigned N, bool any_hit, class Prepare, class Take>
-void trace_rays(RTCScene scene, Query& query, const QuerySet& set, std::size_t first, std::size_t end,
+void trace_rays(Scene scene, Query& query, const QuerySet& set, std::size_t first, std::size_t end,
                 const Prepare& prepare, const Take& take) {
   Packed<N, any_hit> packed;
-  auto* const rays = reinterpret_cast<RTCRayN*>(&packed);
+  Rays<N>& rays = rays_of(packed);
   for (std::size_t at = first; at < end; at += N) {
     const auto n = static_cast<unsigned>(std::min<std::size_t>(N, end - at));
     alignas(64) int valid[N];
@@ -48,9 +53,7 @@ void trace_rays(RTCScene scene, Query& query, const QuerySet& set, std::size_t f
       valid[lane] = lane < n ? -1 : 0;
       put_ray<N>(rays, lane, set, at + std::min(lane, n - 1));
       if constexpr (!any_hit) {
-        RTCHitN* const hit = RTCRayHitN_HitN(reinterpret_cast<RTCRayHitN*>(&packed), N);
-        RTCHitN_geomID(hit, N, lane) = RTC_INVALID_GEOMETRY_ID;
-        RTCHitN_instID(hit, N, lane, 0) = RTC_INVALID_GEOMETRY_ID;
+        packed.hit.geometry[lane] = packed.hit.instance[lane] = kNone;
       }
       prepare(rays, lane, at + lane);
     }
@@ -59,4 +62,4 @@ void trace_rays(RTCScene scene, Query& query, const QuerySet& set, std::size_t f
   }
 }
 
-}  // namespace kdray::bench
+}  // namespace kdray::bench::embree

@@ -3,38 +3,36 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "bench/embree/scenes.h"
 
-namespace kdray::bench {
+namespace kdray::bench::embree {
 
 namespace {
 
 template <class T>
-void copy(RTCGeometry g, RTCBufferType type, RTCFormat format, const std::vector<T>& values) {
-  void* const memory = rtcSetNewGeometryBuffer(g, type, 0, format, 3 * sizeof(T), values.size() / 3);
+void copy(const Library& embree, Geometry g, BufferType type, Format format, const std::vector<T>& values) {
+  void* const memory = embree.set_new_geometry_buffer(g, type, 0, format, 3 * sizeof(T), values.size() / 3);
   if (memory == nullptr) throw Error(ErrorCode::out_of_memory, "no memory for Embree's copy of the mesh");
   std::copy(values.begin(), values.end(), static_cast<T*>(memory));
 }
 
 }  // namespace
 
-EmbreeDevice::EmbreeDevice() : device_(open_embree()) {}
-
-ArrayScene::ArrayScene(const std::shared_ptr<EmbreeDevice>& device, const MeshArrays& mesh, bool robust,
-                       RTCFilterFunctionN filter)
-    : device_(device), scene_(rtcNewScene(device->get())) {
-  rtcSetSceneFlags(scene_, robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
-  rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_MEDIUM);
-  const RTCGeometry g = rtcNewGeometry(device->get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-  copy(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh.vertices);
-  copy(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.triangles);
-  if (filter != nullptr) rtcSetGeometryOccludedFilterFunction(g, filter);
-  rtcCommitGeometry(g);
-  rtcAttachGeometry(scene_, g);
-  rtcReleaseGeometry(g);
-  rtcCommitScene(scene_);
-  if (rtcGetDeviceError(device->get()) != RTC_ERROR_NONE)
+ArrayScene::ArrayScene(const std::shared_ptr<OpenDevice>& device, const MeshArrays& mesh, bool robust,
+                       Filter filter)
+    : device_(device), scene_(device->library().new_scene(device->get())) {
+  const Library& embree = library();
+  embree.set_scene_flags(scene_, robust ? SceneFlags::robust : SceneFlags::none);
+  embree.set_scene_build_quality(scene_, BuildQuality::medium);
+  const Geometry g = embree.new_geometry(device->get(), GeometryType::triangle);
+  copy(embree, g, BufferType::vertex, Format::float3, mesh.vertices);
+  copy(embree, g, BufferType::index, Format::uint3, mesh.triangles);
+  if (filter != nullptr) embree.set_geometry_occluded_filter_function(g, filter);
+  embree.commit_geometry(g);
+  embree.attach_geometry(scene_, g);
+  embree.release_geometry(g);
+  embree.commit_scene(scene_);
+  if (embree.get_device_error(device->get()) != 0)
     throw Error(ErrorCode::internal, "Embree refuses the mesh");
 }
 
-}  // namespace kdray::bench
+}  // namespace kdray::bench::embree

@@ -6,38 +6,40 @@
 
 #include <memory>
 
-#include "bench/embree/api.h"
+#include "bench/embree/library.h"
 #include "bench/workload/arrays.h"
 
-namespace kdray::bench {
+namespace kdray::bench::embree {
 
 // Open as long as a scene of it is.
-class EmbreeDevice {
+class OpenDevice {
  public:
-  EmbreeDevice();
-  ~EmbreeDevice() { rtcReleaseDevice(device_); }
-  EmbreeDevice(const EmbreeDevice&) = delete;
-  EmbreeDevice& operator=(const EmbreeDevice&) = delete;
-  RTCDevice get() const { return device_; }
+  explicit OpenDevice(const Library& library) : library_(library), device_(open(library)) {}
+  ~OpenDevice() { library_.release_device(device_); }
+  OpenDevice(const OpenDevice&) = delete;
+  OpenDevice& operator=(const OpenDevice&) = delete;
+  const Library& library() const { return library_; }
+  Device get() const { return device_; }
 
  private:
-  RTCDevice device_;
+  const Library& library_;
+  Device device_;
 };
 
 class ArrayScene {
  public:
   // `filter`: null, or called for every hit of occlusion rays.
-  ArrayScene(const std::shared_ptr<EmbreeDevice>& device, const MeshArrays& mesh, bool robust,
-             RTCFilterFunctionN filter);
-  ~ArrayScene() { rtcReleaseScene(scene_); }
+  ArrayScene(const std::shared_ptr<OpenDevice>& device, const MeshArrays& mesh, bool robust, Filter filter);
+  ~ArrayScene() { device_->library().release_scene(scene_); }
   ArrayScene(const ArrayScene&) = delete;
   ArrayScene& operator=(const ArrayScene&) = delete;
 
-  RTCScene get() const { return scene_; }
+  const Library& library() const { return device_->library(); }
+  Scene get() const { return scene_; }
 
  private:
-  std::shared_ptr<EmbreeDevice> device_;
-  RTCScene scene_;
+  std::shared_ptr<OpenDevice> device_;
+  Scene scene_;
 };
 
-}  // namespace kdray::bench
+}  // namespace kdray::bench::embree

@@ -1,57 +1,62 @@
 #include "bench/embree/asker.h"
 
+#include <fmt/format.h>
+
 #include "base/error.h"
 #include "bench/embree/sides.h"
 
-namespace kdray::bench {
+namespace kdray::bench::embree {
 
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr auto kAddNothing = [](RTCRayN*, unsigned, std::size_t) {};
+constexpr auto kAddNothing = [](auto&, unsigned, std::size_t) {};
 
 template <unsigned N>
-void closest(EmbreeMesh& mesh, bool coherent, const QuerySet& set, std::size_t first, std::size_t n,
-             Answers& a) {
+void closest(Mesh& mesh, bool coherent, const QuerySet& set, std::size_t first, std::size_t n, Answers& a) {
   mesh.workers.run(n, [&](std::size_t, std::size_t begin, std::size_t end) {
-    Query query(coherent);
+    Query query(mesh.plain.library(), coherent);
     trace_rays<N, false>(mesh.plain.get(), query, set, first + begin, first + end, kAddNothing,
                          [&](Packed<N, false>& packed, unsigned lane, std::size_t i) {
-                           auto* const both = reinterpret_cast<RTCRayHitN*>(&packed);
-                           RTCHitN* const hit = RTCRayHitN_HitN(both, N);
-                           const unsigned geometry = RTCHitN_geomID(hit, N, lane);
-                           const bool missed = geometry == RTC_INVALID_GEOMETRY_ID;
-                           a.t[i] = missed ? kInfinity : RTCRayN_tfar(RTCRayHitN_RayN(both, N), N, lane);
-                           a.geometry[i] = geometry;
-                           a.primitive[i] = missed ? kNoPrimitive : RTCHitN_primID(hit, N, lane);
-                           a.u[i] = missed ? 0 : RTCHitN_u(hit, N, lane);
-                           a.v[i] = missed ? 0 : RTCHitN_v(hit, N, lane);
+                           const Hits<N>& hit = packed.hit;
+                           const bool missed = hit.geometry[lane] == kNone;
+                           a.t[i] = missed ? kInfinity : packed.ray.t_far[lane];
+                           a.geometry[i] = hit.geometry[lane];
+                           a.primitive[i] = missed ? kNoPrimitive : hit.primitive[lane];
+                           a.u[i] = missed ? 0 : hit.u[lane];
+                           a.v[i] = missed ? 0 : hit.v[lane];
                          });
   });
 }
 
 template <unsigned N>
-void any(EmbreeMesh& mesh, bool coherent, const QuerySet& set, std::size_t first, std::size_t n, Answers& a) {
+void any(Mesh& mesh, bool coherent, const QuerySet& set, std::size_t first, std::size_t n, Answers& a) {
   mesh.workers.run(n, [&](std::size_t, std::size_t begin, std::size_t end) {
-    Query query(coherent);
+    Query query(mesh.plain.library(), coherent);
     trace_rays<N, true>(mesh.plain.get(), query, set, first + begin, first + end, kAddNothing,
                         [&](Packed<N, true>& packed, unsigned lane, std::size_t i) {
                           // Embree's own mark of an occluded ray.
-                          a.hit[i] = RTCRayN_tfar(reinterpret_cast<RTCRayN*>(&packed), N, lane) < 0;
+                          a.hit[i] = packed.t_far[lane] < 0;
                         });
   });
 }
 
-Side side(const MeshArrays& mesh, bool robust, int threads) {
-  const auto made = std::make_shared<EmbreeMesh>(mesh, robust, threads);
-  Side side{robust ? "robust" : "fast", {}, {}};
+void add_forms(Side& side, const std::shared_ptr<Mesh>& mesh) {
   for (const unsigned lanes : {1u, 16u})
     for (const bool coherent : {true, false})
-      side.forms.push_back({std::to_string(lanes) + (coherent ? " coherent" : " incoherent"),
-                            std::make_shared<EmbreeAsker>(made, RayForm{coherent, lanes})});
+      side.forms.push_back({fmt::format("{}:{} {}", mesh->device->library().major, lanes,
+                                        coherent ? "coherent" : "incoherent"),
+                            std::make_shared<MeshAsker>(mesh, RayForm{coherent, lanes})});
+}
+
+Side side(const MeshArrays& mesh, bool robust, int threads) {
+  Side side{robust ? "robust" : "fast", {}, {}};
+  for (const Library& library : libraries())
+    add_forms(side, std::make_shared<Mesh>(library, mesh, robust, threads));
   side.first_answer = [&mesh, robust](const QuerySet& set) {
-    const ArrayScene scene(std::make_shared<EmbreeDevice>(), mesh, robust, nullptr);
-    Query query(true);
+    const Library& newest = libraries().back();
+    const ArrayScene scene(std::make_shared<OpenDevice>(newest), mesh, robust, nullptr);
+    Query query(newest, true);
     trace_rays<1, false>(scene.get(), query, set, 0, 1, kAddNothing, [](auto&, unsigned, std::size_t) {});
   };
   return side;
@@ -59,14 +64,15 @@ Side side(const MeshArrays& mesh, bool robust, int threads) {
 
 }  // namespace
 
-EmbreeMesh::EmbreeMesh(const MeshArrays& mesh, bool robust, int threads)
+Mesh::Mesh(const Library& library, const MeshArrays& mesh, bool robust, int threads)
     : arrays(mesh),
+      device(std::make_shared<OpenDevice>(library)),
       plain(device, mesh, robust, nullptr),
       counting(device, mesh, robust, note_count),
       collecting(device, mesh, robust, note_hit),
       workers(threads) {}
 
-void EmbreeAsker::ask(Question question, const QuerySet& set, std::size_t first, std::size_t n, Answers& a) {
+void MeshAsker::ask(Question question, const QuerySet& set, std::size_t first, std::size_t n, Answers& a) {
   switch (question) {
     case Question::closest:
       return form_.lanes == 1 ? closest<1>(*mesh_, form_.coherent, set, first, n, a)
@@ -86,8 +92,13 @@ void EmbreeAsker::ask(Question question, const QuerySet& set, std::size_t first,
   }
 }
 
+}  // namespace kdray::bench::embree
+
+namespace kdray::bench {
+
 std::vector<Side> embree_sides(const MeshArrays& mesh, int threads) {
-  return {side(mesh, false, threads), side(mesh, true, threads)};
+  if (embree::libraries().empty()) return {};
+  return {embree::side(mesh, false, threads), embree::side(mesh, true, threads)};
 }
 
 bool embree_answers(Question question) {

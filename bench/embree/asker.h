@@ -12,39 +12,37 @@
 #include "bench/embree/workers.h"
 #include "bench/race/asker.h"
 
-namespace kdray::bench {
+namespace kdray::bench::embree {
 
 // The mesh's scenes in one mode.
-struct EmbreeMesh {
-  EmbreeMesh(const MeshArrays& mesh, bool robust, int threads);
+struct Mesh {
+  Mesh(const Library& library, const MeshArrays& mesh, bool robust, int threads);
 
   const MeshArrays& arrays;
-  std::shared_ptr<EmbreeDevice> device = std::make_shared<EmbreeDevice>();
+  std::shared_ptr<OpenDevice> device;
   ArrayScene plain, counting, collecting;
   Workers workers;
 };
 
-class EmbreeAsker : public Asker {
+class MeshAsker : public Asker {
  public:
-  EmbreeAsker(std::shared_ptr<EmbreeMesh> mesh, const RayForm& form) : mesh_(std::move(mesh)), form_(form) {}
+  MeshAsker(std::shared_ptr<Mesh> mesh, const RayForm& form) : mesh_(std::move(mesh)), form_(form) {}
   void ask(Question question, const QuerySet& set, std::size_t first, std::size_t n,
            Answers& answers) override;
 
  private:
-  std::shared_ptr<EmbreeMesh> mesh_;
+  std::shared_ptr<Mesh> mesh_;
   RayForm form_;
 };
 
-// The filters of EmbreeMesh, and the questions that are answered with them.
-void note_count(const RTCFilterFunctionNArguments* args);
-void note_hit(const RTCFilterFunctionNArguments* args);
-void count_crossings(EmbreeMesh& mesh, const RayForm& form, const QuerySet& set, std::size_t first,
-                     std::size_t n, std::vector<std::uint32_t>& counts);
-AllHits all_crossings(EmbreeMesh& mesh, const RayForm& form, const QuerySet& set, std::size_t first,
-                      std::size_t n);
+// The filters of Mesh, and the questions that are answered with them.
+void note_count(const FilterArguments* args);
+void note_hit(const FilterArguments* args);
+void count_crossings(Mesh& mesh, const RayForm& form, const QuerySet& set, std::size_t first, std::size_t n,
+                     std::vector<std::uint32_t>& counts);
+AllHits all_crossings(Mesh& mesh, const RayForm& form, const QuerySet& set, std::size_t first, std::size_t n);
 
 // On the mesh's triangles, in floats.
-void nearest_points(EmbreeMesh& mesh, const QuerySet& set, std::size_t first, std::size_t n,
-                    Answers& answers);
+void nearest_points(Mesh& mesh, const QuerySet& set, std::size_t first, std::size_t n, Answers& answers);
 
-}  // namespace kdray::bench
+}  // namespace kdray::bench::embree

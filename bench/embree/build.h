@@ -3,11 +3,19 @@
 //         runs for rtcCommitScene alone.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "bench/race/build_race.h"
 
 namespace kdray::bench {
 
-// What it returns is empty without Embree. The scene and its geometry may go.
-TimedBuild embree_build(const scene::Scene& scene, const scene::Geometry& geometry);
+struct EmbreeBuild {
+  std::string name;  // "Embree 4 medium"
+  TimedBuild build;
+};
+
+// Of each Embree that is there. The scene and its geometry may go.
+std::vector<EmbreeBuild> embree_builds(const scene::Scene& scene, const scene::Geometry& geometry);
 
 }  // namespace kdray::bench

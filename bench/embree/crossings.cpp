@@ -3,7 +3,7 @@
 
 #include "bench/embree/asker.h"
 
-namespace kdray::bench {
+namespace kdray::bench::embree {
 
 namespace {
 
@@ -21,10 +21,10 @@ bool comes_before(const Crossing& a, const Crossing& b) {
 
 // Calls note(lane, ray's number) for each valid hit, and accepts none.
 template <class Note>
-void refuse_all(const RTCFilterFunctionNArguments* args, const Note& note) {
-  for (unsigned lane = 0; lane < args->N; ++lane) {
+void refuse_all(const FilterArguments* args, const Note& note) {
+  for (unsigned lane = 0; lane < args->n; ++lane) {
     if (args->valid[lane] == 0) continue;
-    note(lane, RTCRayN_id(args->ray, args->N, lane));
+    note(lane, at<std::uint32_t>(args, RayRow::id, lane));
     args->valid[lane] = 0;
   }
 }
@@ -33,12 +33,10 @@ void refuse_all(const RTCFilterFunctionNArguments* args, const Note& note) {
 template <unsigned N>
 void trace_through(const ArrayScene& scene, bool coherent, const QuerySet& set, std::size_t first,
                    std::size_t end, void* user) {
-  Query query(coherent, user);
+  Query query(scene.library(), coherent, user);
   trace_rays<N, true>(
       scene.get(), query, set, first, end,
-      [&](RTCRayN* rays, unsigned lane, std::size_t i) {
-        RTCRayN_id(rays, N, lane) = static_cast<unsigned>(i - first);
-      },
+      [&](Rays<N>& rays, unsigned lane, std::size_t i) { rays.id[lane] = static_cast<unsigned>(i - first); },
       [](auto&, unsigned, std::size_t) {});
 }
 
@@ -64,30 +62,31 @@ void place(const std::vector<Crossing>& found, std::size_t at, AllHits& all) {
 
 }  // namespace
 
-void note_count(const RTCFilterFunctionNArguments* args) {
+void note_count(const FilterArguments* args) {
   auto* const counts = static_cast<std::uint32_t*>(user_of(args));
   refuse_all(args, [&](unsigned, unsigned ray) { ++counts[ray]; });
 }
 
-void note_hit(const RTCFilterFunctionNArguments* args) {
+void note_hit(const FilterArguments* args) {
   auto& found = *static_cast<std::vector<Crossing>*>(user_of(args));
   refuse_all(args, [&](unsigned lane, unsigned ray) {
     // The hit's distance is where the ray ends, as long as the filter looks at it.
-    found.push_back({ray, RTCRayN_tfar(args->ray, args->N, lane), RTCHitN_geomID(args->hit, args->N, lane),
-                     RTCHitN_primID(args->hit, args->N, lane), RTCHitN_u(args->hit, args->N, lane),
-                     RTCHitN_v(args->hit, args->N, lane)});
+    found.push_back({ray, at<float>(args, RayRow::t_far, lane),
+                     at<std::uint32_t>(args, HitRow::geometry, lane),
+                     at<std::uint32_t>(args, HitRow::primitive, lane), at<float>(args, HitRow::u, lane),
+                     at<float>(args, HitRow::v, lane)});
   });
 }
 
-void count_crossings(EmbreeMesh& mesh, const RayForm& form, const QuerySet& set, std::size_t first,
-                     std::size_t n, std::vector<std::uint32_t>& counts) {
+void count_crossings(Mesh& mesh, const RayForm& form, const QuerySet& set, std::size_t first, std::size_t n,
+                     std::vector<std::uint32_t>& counts) {
   mesh.workers.run(n, [&](std::size_t, std::size_t begin, std::size_t end) {
     std::fill_n(counts.begin() + static_cast<std::ptrdiff_t>(first + begin), end - begin, 0u);
     trace_through(mesh.counting, form, set, first + begin, first + end, &counts[first + begin]);
   });
 }
 
-AllHits all_crossings(EmbreeMesh& mesh, const RayForm& form, const QuerySet& set, std::size_t first,
+AllHits all_crossings(Mesh& mesh, const RayForm& form, const QuerySet& set, std::size_t first,
                       std::size_t n) {
   std::vector<std::vector<Crossing>> found(Workers::grains(n));
   AllHits all;
@@ -108,4 +107,4 @@ AllHits all_crossings(EmbreeMesh& mesh, const RayForm& form, const QuerySet& set
   return all;
 }
 
-}  // namespace kdray::bench
+}  // namespace kdray::bench::embree

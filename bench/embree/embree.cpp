@@ -1,20 +1,19 @@
 #include "bench/embree/embree.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
-#include <cstring>
 #include <latch>
 #include <limits>
 #include <thread>
 
-#if defined(__SSE__)
-#include <xmmintrin.h>
-#endif
-
 #include "base/timer.h"
+#include "bench/embree/array_rays.h"
 #include "bench/embree/scenes.h"
+#include "bench/embree/workers.h"
 
-namespace kdray::bench {
+namespace kdray::bench::embree {
 
 namespace {
 
@@ -25,13 +24,6 @@ struct Setting {
   bool robust, coherent, stream;
 };
 
-// Embree's manual asks this of every thread that traces.
-void flush_denormals() {
-#if defined(__SSE__)
-  _mm_setcsr(_mm_getcsr() | 0x8040);  // flush to zero, denormals are zero
-#endif
-}
-
 // Runs `trace_chunk(first, end)` over [0, n) on threads that wait for the clock to start. Seconds.
 template <class TraceChunk>
 double on_threads(int n_threads, std::size_t n, std::size_t chunk, const TraceChunk& trace_chunk) {
@@ -40,7 +32,7 @@ double on_threads(int n_threads, std::size_t n, std::size_t chunk, const TraceCh
   std::vector<std::thread> threads;
   for (int i = 0; i < n_threads; ++i)
     threads.emplace_back([&] {
-      flush_denormals();
+      const FlushedDenormals flush;
       ready.count_down();
       start.wait();
       for (std::size_t first; (first = next.fetch_add(chunk)) < n;)
@@ -53,29 +45,26 @@ double on_threads(int n_threads, std::size_t n, std::size_t chunk, const TraceCh
   return timer.seconds();
 }
 
-void set_ray(RTCRayN* rays, unsigned n, unsigned i, const Ray& ray, const LocalSpace& space) {
+template <unsigned N>
+void set_ray(Rays<N>& rays, unsigned i, const Ray& ray, const LocalSpace& space) {
   const vec3 center(space.center);
   const auto scale = static_cast<float>(space.scale);
-  RTCRayN_org_x(rays, n, i) = (ray.origin[0] - center.x) * scale;
-  RTCRayN_org_y(rays, n, i) = (ray.origin[1] - center.y) * scale;
-  RTCRayN_org_z(rays, n, i) = (ray.origin[2] - center.z) * scale;
-  RTCRayN_dir_x(rays, n, i) = ray.direction[0];
-  RTCRayN_dir_y(rays, n, i) = ray.direction[1];
-  RTCRayN_dir_z(rays, n, i) = ray.direction[2];
-  RTCRayN_tnear(rays, n, i) = ray.t_min * scale;
-  RTCRayN_tfar(rays, n, i) = ray.t_max * scale;
-  RTCRayN_time(rays, n, i) = 0;
-  RTCRayN_mask(rays, n, i) = ~0u;
-  RTCRayN_flags(rays, n, i) = 0;
+  for (int k = 0; k < 3; ++k) {
+    rays.origin[k][i] = (ray.origin[k] - center[k]) * scale;
+    rays.direction[k][i] = ray.direction[k];
+  }
+  rays.t_near[i] = ray.t_min * scale;
+  rays.t_far[i] = ray.t_max * scale;
+  rays.time[i] = 0;
+  rays.mask[i] = ~0u;
+  rays.id[i] = rays.flags[i] = 0;
 }
 
 // The rays of a class N to a struct, traced once.
 template <unsigned N, bool any_hit>
 class Tracer {
  public:
-  using Packed = std::conditional_t<any_hit, typename Packet<N>::AnyRay, typename Packet<N>::ClosestRay>;
-
-  Tracer(const EmbreeScenes& scenes, const std::vector<Ray>& rays)
+  Tracer(const Scenes& scenes, const std::vector<Ray>& rays)
       : scenes_(scenes), n_rays_(rays.size()), packed_((rays.size() + N - 1) / N) {
     for (std::size_t i = 0; i < packed_.size() * N; ++i) put(i, rays);
     for (unsigned lane = 0; lane < N; ++lane) {
@@ -85,9 +74,9 @@ class Tracer {
   }
 
   double trace(const Setting& setting, int n_threads) {
-    const RTCScene scene = scenes_.get(setting.robust);
+    const Scene scene = scenes_.get(setting.robust);
     return on_threads(n_threads, packed_.size(), kChunk / N, [&](std::size_t first, std::size_t end) {
-      Query query(setting.coherent);
+      Query query(scenes_.library(), setting.coherent);
       if constexpr (N == 16)
         if (setting.stream) return trace_streams(query, scene, first, end);
       for (std::size_t p = first; p < end; ++p) query.trace(scene, valid_of(p), &packed_[p]);
@@ -101,24 +90,18 @@ class Tracer {
   }
 
  private:
-  RTCRayN* ray_n(std::size_t packet) { return reinterpret_cast<RTCRayN*>(&packed_[packet]); }
-
   // Beyond the last ray: an empty interval, which Embree passes over.
   void put(std::size_t i, const std::vector<Ray>& rays) {
     const auto lane = static_cast<unsigned>(i % N);
     Ray ray = rays[std::min(i, rays.size() - 1)];
     if (i >= rays.size()) ray.t_min = kInfinity, ray.t_max = -kInfinity;
-    set_ray(ray_n(i / N), N, lane, ray, scenes_.space());
-    if constexpr (!any_hit) {
-      RTCHitN* const hit = RTCRayHitN_HitN(reinterpret_cast<RTCRayHitN*>(&packed_[i / N]), N);
-      RTCHitN_geomID(hit, N, lane) = RTC_INVALID_GEOMETRY_ID;
-      RTCHitN_instID(hit, N, lane, 0) = RTC_INVALID_GEOMETRY_ID;
-    }
+    set_ray(rays_of(packed_[i / N]), lane, ray, scenes_.space());
+    if constexpr (!any_hit) packed_[i / N].hit.geometry[lane] = packed_[i / N].hit.instance[lane] = kNone;
   }
 
   const int* valid_of(std::size_t packet) const { return (packet + 1) * N <= n_rays_ ? all_ : last_; }
 
-  void trace_streams(Query& query, RTCScene scene, std::size_t first, std::size_t end) {
+  void trace_streams(Query& query, Scene scene, std::size_t first, std::size_t end) {
     if constexpr (N == 16)
       for (std::size_t p = first; p < end; p += kStreamPackets)
         query.stream(scene, &packed_[p],
@@ -127,27 +110,26 @@ class Tracer {
 
   Hit hit_of(std::size_t i) {
     const auto lane = static_cast<unsigned>(i % N);
-    const float t = RTCRayN_tfar(ray_n(i / N), N, lane);
+    const float t = rays_of(packed_[i / N]).t_far[lane];
     if constexpr (any_hit) {
       return {t < 0 ? 0 : kInfinity, -1, 0, 0};  // Embree's own mark of an occluded ray
     } else {
-      RTCHitN* const hit = RTCRayHitN_HitN(reinterpret_cast<RTCRayHitN*>(&packed_[i / N]), N);
-      const unsigned geometry = RTCHitN_geomID(hit, N, lane);
-      if (geometry == RTC_INVALID_GEOMETRY_ID) return {kInfinity, -1, 0, 0};
+      const Hits<N>& hit = packed_[i / N].hit;
+      if (hit.geometry[lane] == kNone) return {kInfinity, -1, 0, 0};
       return {static_cast<float>(scenes_.space().world_length(t)),
-              scenes_.number_of(RTCHitN_instID(hit, N, lane, 0), geometry, RTCHitN_primID(hit, N, lane)),
-              RTCHitN_u(hit, N, lane), RTCHitN_v(hit, N, lane)};
+              scenes_.number_of(hit.instance[lane], hit.geometry[lane], hit.primitive[lane]), hit.u[lane],
+              hit.v[lane]};
     }
   }
 
-  const EmbreeScenes& scenes_;
+  const Scenes& scenes_;
   std::size_t n_rays_;
-  std::vector<Packed> packed_;
+  std::vector<Packed<N, any_hit>> packed_;
   alignas(64) int all_[N], last_[N];
 };
 
 template <unsigned N>
-Traced trace_packets(const EmbreeScenes& scenes, const RayClass& c, const Setting& setting, int threads) {
+Traced trace_packets(const Scenes& scenes, const RayClass& c, const Setting& setting, int threads) {
   const auto run = [&](auto&& tracer) {
     const double seconds = tracer.trace(setting, threads);
     return Traced{seconds, tracer.hits()};
@@ -156,7 +138,7 @@ Traced trace_packets(const EmbreeScenes& scenes, const RayClass& c, const Settin
   return c.any_hit ? run(Tracer<N, true>(scenes, c.rays)) : run(Tracer<N, false>(scenes, c.rays));
 }
 
-using TraceFunction = Traced (*)(const EmbreeScenes&, const RayClass&, const Setting&, int);
+using TraceFunction = Traced (*)(const Scenes&, const RayClass&, const Setting&, int);
 
 struct Mode {
   const char* name;
@@ -169,9 +151,10 @@ constexpr Mode kModes[] = {{"1", trace_packets<1>, false},
                            {"16", trace_packets<16>, false},
                            {"stream", trace_packets<16>, true}};
 
-Contestant contestant(const std::shared_ptr<EmbreeScenes>& scenes, const Mode& mode, bool robust,
-                      int threads) {
-  Contestant made{robust ? Family::embree_robust : Family::embree_fast, mode.name, {}};
+Contestant contestant(const std::shared_ptr<Scenes>& scenes, const Mode& mode, bool robust, int threads) {
+  Contestant made{robust ? Family::embree_robust : Family::embree_fast,
+                  fmt::format("{}:{}", scenes->library().major, mode.name),
+                  {}};
   for (const bool coherent : {true, false})
     made.variants.push_back({coherent ? "coherent" : "incoherent",
                              [=, setting = Setting{robust, coherent, mode.stream}](const RayClass& c) {
@@ -182,24 +165,32 @@ Contestant contestant(const std::shared_ptr<EmbreeScenes>& scenes, const Mode& m
 
 }  // namespace
 
-std::string embree_version() {
-  return RTC_VERSION_STRING;
+}  // namespace kdray::bench::embree
+
+namespace kdray::bench {
+
+std::string embree_versions() {
+  std::string versions;
+  for (const embree::Library& library : embree::libraries())
+    versions += (versions.empty() ? "" : " and ") + library.version;
+  return versions;
 }
 
-std::shared_ptr<EmbreeScenes> make_embree_scenes(const scene::Scene& scene) {
-  return std::make_shared<EmbreeScenes>(scene);
+EmbreeScenes make_embree_scenes(const scene::Scene& scene) {
+  EmbreeScenes all;
+  for (const embree::Library& library : embree::libraries())
+    all.push_back(std::make_shared<embree::Scenes>(library, scene));
+  return all;
 }
 
-std::vector<Contestant> embree_contestants(const std::shared_ptr<EmbreeScenes>& scenes, int threads) {
+std::vector<Contestant> embree_contestants(const EmbreeScenes& all, int threads) {
   std::vector<Contestant> contestants;
   for (const bool robust : {false, true})
-    for (const Mode& mode : kModes)
-      if (kHasStreams || !mode.stream) contestants.push_back(contestant(scenes, mode, robust, threads));
+    for (const auto& scenes : all)
+      for (const embree::Mode& mode : embree::kModes)
+        if (scenes->library().major == 3 || !mode.stream)
+          contestants.push_back(embree::contestant(scenes, mode, robust, threads));
   return contestants;
-}
-
-Traced trace_embree16(const std::shared_ptr<EmbreeScenes>& scenes, const RayClass& rays, int threads) {
-  return trace_packets<16>(*scenes, rays, {.robust = false, .coherent = true, .stream = false}, threads);
 }
 
 }  // namespace kdray::bench

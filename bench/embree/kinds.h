@@ -11,34 +11,34 @@
 #include <vector>
 
 #include "base/error.h"
-#include "bench/embree/api.h"
+#include "bench/embree/library.h"
 #include "scene/model/geometry.h"
 #include "scene/model/scene.h"
 
-namespace kdray::bench {
+namespace kdray::bench::embree {
 
 // A curve's flags without end caps.
-inline constexpr std::uint8_t kOpenCone = RTC_CURVE_FLAG_NEIGHBOR_LEFT | RTC_CURVE_FLAG_NEIGHBOR_RIGHT;
+inline constexpr std::uint8_t kOpenCone = kNeighborLeft | kNeighborRight;
 
 template <class Kind>
-constexpr RTCGeometryType embree_type(Kind) {
-  return RTC_GEOMETRY_TYPE_USER;  // never made
+constexpr GeometryType embree_type(Kind) {
+  return GeometryType::user;  // never made
 }
-constexpr RTCGeometryType embree_type(primitives::TriangleKind) {
-  return RTC_GEOMETRY_TYPE_TRIANGLE;
+constexpr GeometryType embree_type(primitives::TriangleKind) {
+  return GeometryType::triangle;
 }
-constexpr RTCGeometryType embree_type(primitives::SphereKind) {
-  return RTC_GEOMETRY_TYPE_SPHERE_POINT;
+constexpr GeometryType embree_type(primitives::SphereKind) {
+  return GeometryType::sphere_point;
 }
-constexpr RTCGeometryType embree_type(primitives::ConeKind) {
-  return RTC_GEOMETRY_TYPE_CONE_LINEAR_CURVE;
+constexpr GeometryType embree_type(primitives::ConeKind) {
+  return GeometryType::cone_linear_curve;
 }
-constexpr RTCGeometryType embree_type(primitives::DiscKind) {
-  return RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT;
+constexpr GeometryType embree_type(primitives::DiscKind) {
+  return GeometryType::oriented_disc_point;
 }
 
 template <class Kind>
-constexpr bool kEmbreeHas = embree_type(Kind()) != RTC_GEOMETRY_TYPE_USER;
+constexpr bool kEmbreeHas = embree_type(Kind()) != GeometryType::user;
 
 template <class Kind>
 void refuse_any(Kind, const scene::Geometry& geometry) {
@@ -50,34 +50,35 @@ void refuse_any(Kind, const scene::Geometry& geometry) {
 // ---- Of a scene that is traced
 
 template <class T>
-T* new_buffer(RTCGeometry g, RTCBufferType type, RTCFormat format, std::size_t stride, std::size_t n) {
-  void* const memory = rtcSetNewGeometryBuffer(g, type, 0, format, stride, n);
+T* new_buffer(const Library& embree, Geometry g, BufferType type, Format format, std::size_t stride,
+              std::size_t n) {
+  void* const memory = embree.set_new_geometry_buffer(g, type, 0, format, stride, n);
   if (memory == nullptr) throw Error(ErrorCode::out_of_memory, "no memory for Embree's copy of the scene");
   return static_cast<T*>(memory);
 }
 
-inline void fill(RTCGeometry g, std::span<const scene::TriangleGeometry> triangles) {
+inline void fill(const Library& embree, Geometry g, std::span<const scene::TriangleGeometry> triangles) {
   auto* point =
-      new_buffer<vec3>(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, sizeof(vec3), 3 * triangles.size());
-  auto* index = new_buffer<std::uint32_t>(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
+      new_buffer<vec3>(embree, g, BufferType::vertex, Format::float3, sizeof(vec3), 3 * triangles.size());
+  auto* index = new_buffer<std::uint32_t>(embree, g, BufferType::index, Format::uint3,
                                           3 * sizeof(std::uint32_t), triangles.size());
   for (const scene::TriangleGeometry& t : triangles)
     for (int i = 0; i < 3; ++i) *point++ = scene::vertex(t, i);
   for (std::uint32_t i = 0; i < 3 * triangles.size(); ++i) index[i] = i;
 }
 
-inline void fill(RTCGeometry g, const std::vector<scene::SphereGeometry>& spheres) {
+inline void fill(const Library& embree, Geometry g, const std::vector<scene::SphereGeometry>& spheres) {
   auto* point =
-      new_buffer<glm::vec4>(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, sizeof(glm::vec4), spheres.size());
+      new_buffer<glm::vec4>(embree, g, BufferType::vertex, Format::float4, sizeof(glm::vec4), spheres.size());
   for (const scene::SphereGeometry& s : spheres) *point++ = {s.center, s.radius};
 }
 
-inline void fill(RTCGeometry g, const std::vector<scene::ConeGeometry>& cones) {
-  auto* point = new_buffer<glm::vec4>(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, sizeof(glm::vec4),
+inline void fill(const Library& embree, Geometry g, const std::vector<scene::ConeGeometry>& cones) {
+  auto* point = new_buffer<glm::vec4>(embree, g, BufferType::vertex, Format::float4, sizeof(glm::vec4),
                                       2 * cones.size());
-  auto* index = new_buffer<std::uint32_t>(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT, sizeof(std::uint32_t),
+  auto* index = new_buffer<std::uint32_t>(embree, g, BufferType::index, Format::uint, sizeof(std::uint32_t),
                                           cones.size());
-  auto* flags = new_buffer<std::uint8_t>(g, RTC_BUFFER_TYPE_FLAGS, RTC_FORMAT_UCHAR, 1, cones.size());
+  auto* flags = new_buffer<std::uint8_t>(embree, g, BufferType::flags, Format::uchar, 1, cones.size());
   for (std::uint32_t i = 0; i < cones.size(); ++i) {
     point[2 * i] = {cones[i].base, cones[i].base_radius};
     point[2 * i + 1] = {cones[i].apex, cones[i].apex_radius};
@@ -86,10 +87,10 @@ inline void fill(RTCGeometry g, const std::vector<scene::ConeGeometry>& cones) {
   }
 }
 
-inline void fill(RTCGeometry g, const std::vector<scene::DiscGeometry>& discs) {
+inline void fill(const Library& embree, Geometry g, const std::vector<scene::DiscGeometry>& discs) {
   auto* point =
-      new_buffer<glm::vec4>(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, sizeof(glm::vec4), discs.size());
-  auto* normal = new_buffer<vec3>(g, RTC_BUFFER_TYPE_NORMAL, RTC_FORMAT_FLOAT3, sizeof(vec3), discs.size());
+      new_buffer<glm::vec4>(embree, g, BufferType::vertex, Format::float4, sizeof(glm::vec4), discs.size());
+  auto* normal = new_buffer<vec3>(embree, g, BufferType::normal, Format::float3, sizeof(vec3), discs.size());
   for (const scene::DiscGeometry& d : discs) *point++ = {d.center, d.radius}, *normal++ = d.normal;
 }
 
@@ -163,4 +164,4 @@ Buffers buffers_of(Kind kind, const scene::Scene&, const scene::Geometry& geomet
   return {};
 }
 
-}  // namespace kdray::bench
+}  // namespace kdray::bench::embree

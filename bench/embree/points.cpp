@@ -4,7 +4,7 @@
 #include "base/vec.h"
 #include "bench/embree/asker.h"
 
-namespace kdray::bench {
+namespace kdray::bench::embree {
 
 namespace {
 
@@ -56,31 +56,30 @@ vec3 corner(const MeshArrays& mesh, std::uint32_t triangle, int k) {
   return {v[0], v[1], v[2]};
 }
 
-bool look_at_triangle(RTCPointQueryFunctionArguments* args) {
-  Search& search = *static_cast<Search*>(args->userPtr);
+bool look_at_triangle(PointArguments* args) {
+  Search& search = *static_cast<Search*>(args->user);
   const MeshArrays& mesh = *search.mesh;
   const vec3 p(args->query->x, args->query->y, args->query->z);
-  const Nearest found = nearest_of(p, corner(mesh, args->primID, 0), corner(mesh, args->primID, 1),
-                                   corner(mesh, args->primID, 2));
+  const Nearest found = nearest_of(p, corner(mesh, args->primitive, 0), corner(mesh, args->primitive, 1),
+                                   corner(mesh, args->primitive, 2));
   const float distance = glm::length(p - found.point);
   if (!(distance < search.distance)) return false;
   search.distance = args->query->radius = distance;
-  search.geometry = args->geomID;
-  search.primitive = args->primID;
+  search.geometry = args->geometry;
+  search.primitive = args->primitive;
   search.nearest = found;
   return true;
 }
 
 }  // namespace
 
-void nearest_points(EmbreeMesh& mesh, const QuerySet& set, std::size_t first, std::size_t n, Answers& a) {
+void nearest_points(Mesh& mesh, const QuerySet& set, std::size_t first, std::size_t n, Answers& a) {
   mesh.workers.run(n, [&](std::size_t, std::size_t begin, std::size_t end) {
-    RTCPointQueryContext context;
-    rtcInitPointQueryContext(&context);
+    PointContext context;
     for (std::size_t i = first + begin; i < first + end; ++i) {
       Search search{&mesh.arrays};
-      RTCPointQuery query{set.points[3 * i], set.points[3 * i + 1], set.points[3 * i + 2], 0, kInfinity};
-      rtcPointQuery(mesh.plain.get(), &query, &context, look_at_triangle, &search);
+      PointQuery query{set.points[3 * i], set.points[3 * i + 1], set.points[3 * i + 2], 0, kInfinity};
+      mesh.plain.library().point_query(mesh.plain.get(), &query, &context, look_at_triangle, &search);
       a.t[i] = search.distance;
       a.geometry[i] = search.geometry;
       a.primitive[i] = search.primitive;
@@ -91,4 +90,4 @@ void nearest_points(EmbreeMesh& mesh, const QuerySet& set, std::size_t first, st
   });
 }
 
-}  // namespace kdray::bench
+}  // namespace kdray::bench::embree

@@ -3,19 +3,19 @@
 #include "base/error.h"
 #include "bench/embree/kinds.h"
 
-namespace kdray::bench {
+namespace kdray::bench::embree {
 
 namespace {
 
 template <class Primitives>
-void attach(RTCDevice device, RTCScene into, unsigned id, RTCGeometryType type,
+void attach(const Library& embree, Device device, Scene into, unsigned id, GeometryType type,
             const Primitives& primitives) {
   if (primitives.empty()) return;
-  const RTCGeometry g = rtcNewGeometry(device, type);
-  fill(g, primitives);
-  rtcCommitGeometry(g);
-  rtcAttachGeometryByID(into, g, id);
-  rtcReleaseGeometry(g);
+  const Geometry g = embree.new_geometry(device, type);
+  fill(embree, g, primitives);
+  embree.commit_geometry(g);
+  embree.attach_geometry_by_id(into, g, id);
+  embree.release_geometry(g);
 }
 
 template <class Kind>
@@ -32,13 +32,7 @@ std::vector<std::uint32_t> numbers_of(Kind, const scene::Scene& scene, const sce
 
 }  // namespace
 
-RTCDevice open_embree() {
-  const RTCDevice device = rtcNewDevice("frequency_level=simd512");
-  if (device == nullptr) throw Error(ErrorCode::internal, "Embree gives no device");
-  return device;
-}
-
-EmbreeScenes::EmbreeScenes(const scene::Scene& scene) : device_(open_embree()) {
+Scenes::Scenes(const Library& embree, const scene::Scene& scene) : embree_(embree), device_(open(embree)) {
   const scene::Geometry geometry = scene::make_geometry(scene);
   space_ = geometry.space;
   const auto numbers = [](const scene::Scene& of, const scene::Geometry& g) {
@@ -52,30 +46,30 @@ EmbreeScenes::EmbreeScenes(const scene::Scene& scene) : device_(open_embree()) {
     of_meshes_.push_back(numbers(*mesh, meshes_.back()));
   }
   for (const scene::Instance& instance : scene.instances) mesh_of_.push_back(instance.mesh);
-  const auto made = [&](RTCSceneFlags flags) {
-    const RTCScene all = build(geometry, flags);
+  const auto made = [&](SceneFlags flags) {
+    const Scene all = build(geometry, flags);
     add_instances(all, scene, flags);
     finish(all);
     return all;
   };
-  fast_ = made(RTC_SCENE_FLAG_NONE);
-  robust_ = made(RTC_SCENE_FLAG_ROBUST);
+  fast_ = made(SceneFlags::none);
+  robust_ = made(SceneFlags::robust);
   meshes_.clear();
 }
 
-EmbreeScenes::~EmbreeScenes() {
-  rtcReleaseScene(fast_);
-  rtcReleaseScene(robust_);
-  rtcReleaseDevice(device_);
+Scenes::~Scenes() {
+  embree_.release_scene(fast_);
+  embree_.release_scene(robust_);
+  embree_.release_device(device_);
 }
 
-RTCScene EmbreeScenes::build(const scene::Geometry& geometry, RTCSceneFlags flags) const {
-  const RTCScene made = rtcNewScene(device_);
-  rtcSetSceneFlags(made, flags);
-  rtcSetSceneBuildQuality(made, RTC_BUILD_QUALITY_MEDIUM);
+Scene Scenes::build(const scene::Geometry& geometry, SceneFlags flags) const {
+  const Scene made = embree_.new_scene(device_);
+  embree_.set_scene_flags(made, flags);
+  embree_.set_scene_build_quality(made, BuildQuality::medium);
   primitives::for_each_kind([&](auto kind) {
     if constexpr (kEmbreeHas<decltype(kind)>)
-      attach(device_, made, kind.kNumber, embree_type(kind), decltype(kind)::of(geometry));
+      attach(embree_, device_, made, kind.kNumber, embree_type(kind), decltype(kind)::of(geometry));
     else
       refuse_any(kind, geometry);
   });
@@ -83,8 +77,8 @@ RTCScene EmbreeScenes::build(const scene::Geometry& geometry, RTCSceneFlags flag
 }
 
 // Instances hold their meshes' scenes.
-void EmbreeScenes::add_instances(RTCScene into, const scene::Scene& scene, RTCSceneFlags flags) const {
-  std::vector<RTCScene> meshes;
+void Scenes::add_instances(Scene into, const scene::Scene& scene, SceneFlags flags) const {
+  std::vector<Scene> meshes;
   for (const scene::Geometry& mesh : meshes_) finish(meshes.emplace_back(build(mesh, flags)));
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const scene::Instance& instance = scene.instances[i];
@@ -97,20 +91,19 @@ void EmbreeScenes::add_instances(RTCScene into, const scene::Scene& scene, RTCSc
         columns[3 * column + k] = static_cast<float>(linear[column][k]);
       columns[9 + k] = static_cast<float>(move[k]);
     }
-    const RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(g, meshes[instance.mesh]);
-    rtcSetGeometryTransform(g, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
-    rtcCommitGeometry(g);
-    rtcAttachGeometryByID(into, g, kFirstInstance + static_cast<unsigned>(i));
-    rtcReleaseGeometry(g);
+    const Geometry g = embree_.new_geometry(device_, GeometryType::instance);
+    embree_.set_geometry_instanced_scene(g, meshes[instance.mesh]);
+    embree_.set_geometry_transform(g, 0, Format::float3x4_column_major, columns);
+    embree_.commit_geometry(g);
+    embree_.attach_geometry_by_id(into, g, kFirstInstance + static_cast<unsigned>(i));
+    embree_.release_geometry(g);
   }
-  for (const RTCScene mesh : meshes) rtcReleaseScene(mesh);
+  for (const Scene mesh : meshes) embree_.release_scene(mesh);
 }
 
-void EmbreeScenes::finish(RTCScene made) const {
-  rtcCommitScene(made);
-  if (rtcGetDeviceError(device_) != RTC_ERROR_NONE)
-    throw Error(ErrorCode::internal, "Embree refuses the scene");
+void Scenes::finish(Scene made) const {
+  embree_.commit_scene(made);
+  if (embree_.get_device_error(device_) != 0) throw Error(ErrorCode::internal, "Embree refuses the scene");
 }
 
-}  // namespace kdray::bench
+}  // namespace kdray::bench::embree

@@ -1,4 +1,5 @@
-// What    Embree as sides of `bench queries`: a fast scene and a robust one. Without Embree there are none.
+// What    Embree as sides of `bench queries`: a fast scene and a robust one, each in the forms of all Embrees
+//         that are there. Without Embree there are none. A first answer is the newest one's.
 #pragma once
 
 #include "bench/race/asker.h"

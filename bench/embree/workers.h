@@ -13,7 +13,7 @@
 #include <xmmintrin.h>
 #endif
 
-namespace kdray::bench {
+namespace kdray::bench::embree {
 
 class FlushedDenormals {
  public:
@@ -61,4 +61,4 @@ class Workers {
   tbb::task_arena arena_;
 };
 
-}  // namespace kdray::bench
+}  // namespace kdray::bench::embree

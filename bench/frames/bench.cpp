@@ -8,12 +8,11 @@
 #include <nlohmann/json.hpp>
 
 #include "api/statistics_json.h"
-#include "bench/embree/embree.h"
+#include "bench/embree/whitted.h"
 #include "bench/measure/cores.h"
 #include "bench/povray/povray.h"
-#include "bench/workload/rays.h"
+#include "bench/workload/scenes.h"
 #include "kdray/kdray.h"
-#include "scene/generate/built_in.h"
 #include "scene/generate/generate.h"
 
 namespace kdray::bench {
@@ -41,15 +40,17 @@ bool is_nff(const std::string& name) {
 class FrameBench {
  public:
   FrameBench(const FramesOptions& options, const std::string& name)
-      : options_(options), name_(name), scene_(generate::load_scene(name)) {
+      : options_(options), name_(name), scene_(load_scene(name)) {
     DeviceOptions device;
     device.device = options.device;
     renderer_ = std::make_unique<Renderer>(scene_, TreeOptions{.binary_form = false}, device);
     facts_ = api::device_json(renderer_->statistics());
     cores_ = cores_of(facts_);
-    embree_ = make_embree_scenes(scene_.model());
-    if (embree_) make_primary();
-    if (has_povray() && is_nff(name))
+    if (!is_nff(name)) return;
+    embree_ = embree_frames(scene_.model(),
+                            {options.width, options.height, options.depth, kDefaultMinWeight, cores_});
+    embree_seconds_.resize(embree_.size());
+    if (has_povray())
       povray_ = std::make_unique<Povray>(scene_.model(), options.width, options.height, options.depth,
                                          kDefaultMinWeight);
   }
@@ -60,28 +61,23 @@ class FrameBench {
   }
 
  private:
-  void make_primary() {
-    const std::string wanted = "primary";
-    const int side = static_cast<int>(std::sqrt(static_cast<double>(options_.width) * options_.height));
-    primary_ = make_classes(scene_.model(), std::span(&wanted, 1), side, [](std::span<const Ray> rays) {
-                 return std::vector<Hit>(rays.size(), Hit{0, -1, 0, 0});  // no hits are needed for these
-               }).front();
-  }
-
   // Round -1 warms up and is not counted.
   void run_round(int round) {
     RenderOptions o;
     o.width = options_.width, o.height = options_.height, o.depth = options_.depth;
     renderer_->render(o);
     const Statistics& statistics = renderer_->statistics();
-    const double embree = embree_ ? trace_embree16(embree_, primary_, cores_).seconds : 0;
+    for (std::size_t i = 0; i < embree_.size(); ++i) {
+      const EmbreePicture picture = embree_[i].render();
+      if (round >= 0) embree_seconds_[i].push_back(picture.seconds);
+      n_embree_rays_ = picture.n_rays;
+    }
     const bool with_povray = povray_ && round < kPovrayRounds;
     const double povray = with_povray ? povray_->trace_seconds(cores_) : 0;
     if (round < 0) return;
     for (const auto& [stage, seconds] : times_of_frame(statistics.seconds))
       seconds_[stage].push_back(seconds);
     rays_ = api::statistics_json(statistics).at("rays");
-    if (embree_) embree_seconds_.push_back(embree);
     if (with_povray) povray_seconds_.push_back(povray);
   }
 
@@ -97,7 +93,8 @@ class FrameBench {
       if (stage != "render") r.stages.emplace_back(stage, spread_of(seconds));
     for (const char* const kind : {"primary", "shadow", "reflected", "refracted", "total"})
       r.rays[kind] = rays_.at(kind);
-    if (embree_) r.embree_seconds = spread_of(embree_seconds_), r.n_embree_rays = primary_.rays.size();
+    for (std::size_t i = 0; i < embree_.size(); ++i)
+      r.embree.push_back({embree_[i].name, spread_of(embree_seconds_[i]), n_embree_rays_});
     if (povray_) r.povray_seconds = spread_of(povray_seconds_);
     return r;
   }
@@ -108,14 +105,21 @@ class FrameBench {
   std::unique_ptr<Renderer> renderer_;
   nlohmann::json facts_, rays_;
   int cores_ = 0;
-  std::shared_ptr<EmbreeScenes> embree_;
-  RayClass primary_;
+  std::vector<EmbreeFrames> embree_;
+  std::vector<std::vector<double>> embree_seconds_;
+  std::uint64_t n_embree_rays_ = 0;
   std::unique_ptr<Povray> povray_;
   std::map<std::string, std::vector<double>> seconds_;
-  std::vector<double> embree_seconds_, povray_seconds_;
+  std::vector<double> povray_seconds_;
 };
 
 }  // namespace
+
+const EmbreeFrame* FrameResult::fastest_embree() const {
+  const auto found =
+      std::ranges::min_element(embree, {}, [](const EmbreeFrame& frame) { return frame.seconds.median; });
+  return found == embree.end() ? nullptr : &*found;
+}
 
 std::vector<FrameResult> bench_frames(const FramesOptions& options,
                                       const std::function<void(const FrameResult&)>& done,

@@ -1,7 +1,7 @@
-// What    `kdray bench frames`: whole frames, scene by scene, with the time of each stage; beside them
-//         POV-Ray on the same picture (of NFF scenes), and Embree on the same primary rays.
-// Shape   Interleaved: a round is a frame of kdray's, the primary rays through Embree, a picture of POV-Ray's
-//         (in the first three rounds, since it takes so much longer). One of each before that is not counted.
+// What    `kdray bench frames`: whole frames, scene by scene, with the time of each stage; beside them, of
+//         NFF scenes, the same picture by POV-Ray and by a renderer on Embree (bench/embree/whitted.h).
+// Shape   Interleaved: a round is a frame of kdray's, one by each Embree, a picture of POV-Ray's (in the
+//         first three rounds, since it takes so much longer). One of each before that is not counted.
 #pragma once
 
 #include <functional>
@@ -24,6 +24,12 @@ struct FramesOptions {
   std::string device = "auto";
 };
 
+struct EmbreeFrame {
+  std::string name;  // "Embree 4"
+  Spread seconds;
+  std::uint64_t n_rays = 0;
+};
+
 struct FrameResult {
   std::string scene;
   KindCounts n_primitives;
@@ -33,9 +39,9 @@ struct FrameResult {
   std::vector<std::pair<std::string, Spread>> stages;  // device seconds by stage
   std::map<std::string, std::uint64_t> rays;           // by kind, and "total"
   std::optional<Spread> povray_seconds;
-  std::optional<Spread> embree_seconds;  // for n_embree_rays primary rays, 16 coherent, fast scene
-  std::size_t n_embree_rays = 0;
+  std::vector<EmbreeFrame> embree;
 
+  const EmbreeFrame* fastest_embree() const;  // null without
   std::size_t n_rays() const { return rays.at("total"); }
 };
 

@@ -8,9 +8,8 @@ namespace kdray::bench {
 
 namespace {
 
-std::optional<Spread> embree_rate(const FrameResult& f) {
-  if (!f.embree_seconds) return std::nullopt;
-  return mrays_per_s(f.n_embree_rays, *f.embree_seconds);
+Json json_of(const EmbreeFrame& e) {
+  return {{"name", e.name}, {"seconds", json_of(e.seconds)}, {"rays", e.n_rays}};
 }
 
 Json optional_json(const std::optional<Spread>& spread) {
@@ -28,10 +27,14 @@ Json json_of(const FrameResult& f) {
                {"rays", Json::object()},
                {"povray_seconds", optional_json(f.povray_seconds)},
                {"povray_ratio", Json()},
-               {"embree_primary_mrays_per_s", optional_json(embree_rate(f))}};
+               {"embree", Json::array()},
+               {"embree_ratio", Json()}};
   for (const auto& [stage, seconds] : f.stages) json["stages"][stage] = json_of(seconds);
   for (const auto& [kind, n] : f.rays) json["rays"][kind] = n;
   if (f.povray_seconds) json["povray_ratio"] = f.povray_seconds->median / f.seconds.median;
+  for (const EmbreeFrame& e : f.embree) json["embree"].push_back(json_of(e));
+  if (const EmbreeFrame* const e = f.fastest_embree())
+    json["embree_ratio"] = e->seconds.median / f.seconds.median;
   return json;
 }
 
@@ -53,13 +56,15 @@ std::string table_of(const FrameResult& f) {
   if (f.povray_seconds)
     out += fmt::format("\n  POV-Ray: {:.3f} s, {:.1f} times as long", f.povray_seconds->median,
                        f.povray_seconds->median / f.seconds.median);
-  if (const auto embree = embree_rate(f))
-    out += fmt::format("\n  Embree, primary rays in coherent packets of 16: {:.1f} Mrays/s", embree->median);
+  for (const EmbreeFrame& e : f.embree)
+    out += fmt::format("\n  {}: {:.4f} s ({:.4f} to {:.4f}), {:.2f} times as long; {} M rays", e.name,
+                       e.seconds.median, e.seconds.min, e.seconds.max, e.seconds.median / f.seconds.median,
+                       in_millions(e.n_rays));
   return out + "\n";
 }
 
 Json json_of(std::span<const FrameResult> frames, const FramesOptions& options) {
-  const std::string embree = embree_version();
+  const std::string embree = embree_versions();
   Json json = {{"command", "bench frames"},
                {"embree", embree.empty() ? Json() : Json(embree)},
                {"size", {options.width, options.height}},

@@ -14,6 +14,7 @@
 #include "bench/race/compare_hits.h"
 #include "bench/race/kdray_contestants.h"
 #include "bench/workload/flock.h"
+#include "bench/workload/scenes.h"
 #include "scene/generate/built_in.h"
 #include "scene/generate/displaced_sphere.h"
 #include "scene/model/instances.h"
@@ -34,7 +35,7 @@ InstancesOptions resolved(InstancesOptions o) {
 }
 
 scene::Scene load_mesh(const std::string& name) {
-  if (name != "ball") return generate::load_scene(name);
+  if (name != "ball") return load_scene(name);
   scene::Scene ball = generate::displaced_sphere_of(kBallTriangles);
   ball.name = name;
   return ball;
@@ -49,7 +50,7 @@ scene::Scene with_copies(scene::Scene model) {
 struct Form {
   Scene scene;
   std::shared_ptr<Renderer> renderer;
-  std::shared_ptr<EmbreeScenes> embree;
+  EmbreeScenes embree;
 
   Form(scene::Scene model, const InstancesOptions& o) : scene(std::move(model)) {
     DeviceOptions device;
@@ -62,8 +63,7 @@ struct Form {
   std::vector<Contestant> contestants(const InstancesOptions& o, int cores) const {
     std::vector<Contestant> all;
     for (const std::string& name : o.traversals) all.push_back(kdray_contestant(renderer, name));
-    if (embree)
-      for (Contestant& c : embree_contestants(embree, cores)) all.push_back(std::move(c));
+    for (Contestant& c : embree_contestants(embree, cores)) all.push_back(std::move(c));
     return all;
   }
 

@@ -28,7 +28,7 @@ const char* name_of(Family family) {
 }
 
 std::string version_of_embree(const InstancesOptions& options) {
-  return options.embree ? embree_version() : "";
+  return options.embree ? embree_versions() : "";
 }
 
 std::string heading(const InstancesRun& run) {
@@ -39,7 +39,7 @@ std::string heading(const InstancesRun& run) {
 std::string line_of(const InstancesClass& c, const Pair& p) {
   const Spread instances = mrays_per_s(c.n_rays, p.instances.seconds),
                copies = mrays_per_s(c.n_rays, p.copies.seconds);
-  return fmt::format("  {:<10}{:<15}{:<8}{:>8.2f} {:>7.2f}-{:<8.2f}{:>8.2f} {:>7.2f}-{:<8.2f}{:>7.2f}\n",
+  return fmt::format("  {:<10}{:<15}{:<9}{:>8.2f} {:>7.2f}-{:<8.2f}{:>8.2f} {:>7.2f}-{:<8.2f}{:>7.2f}\n",
                      c.name, name_of(p.instances.family), p.instances.mode, instances.median, instances.min,
                      instances.max, copies.median, copies.min, copies.max,
                      p.instances.seconds.median / p.copies.seconds.median);
@@ -107,7 +107,7 @@ Json json_of(const InstancesRun& run) {
 
 std::string table_of(const InstancesRun& run) {
   std::string out = heading(run) + "\n" +
-                    fmt::format("  {:<33}{:>8} {:<16}{:>8} {:<16}{:>7}\n", "Mrays/s", "instances", "",
+                    fmt::format("  {:<34}{:>8} {:<16}{:>8} {:<16}{:>7}\n", "Mrays/s", "instances", "",
                                 "copies", "", "times");
   for (const InstancesClass& c : run.classes) {
     if (c.pairs.empty()) out += fmt::format("  {:<10}no rays of this class\n", c.name);

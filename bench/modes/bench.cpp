@@ -9,7 +9,7 @@
 #include "accel/prepare/prepared.h"
 #include "api/statistics_json.h"
 #include "bench/measure/cores.h"
-#include "scene/generate/built_in.h"
+#include "bench/workload/scenes.h"
 
 namespace kdray::bench {
 
@@ -118,7 +118,7 @@ class Runner {
 class ModesScene {
  public:
   ModesScene(const ModesOptions& options, const std::string& name)
-      : options_(options), scene_(generate::load_scene(name)), prepared_(scene_, {.binary_form = false}) {
+      : options_(options), scene_(load_scene(name)), prepared_(scene_, {.binary_form = false}) {
     Renderer renderer(prepared_, {.device = options.device});
     const nlohmann::json facts = api::statistics_json(renderer.statistics());
     run_.scene = name;

@@ -12,7 +12,7 @@
 #include "bench/queries/compare.h"
 #include "bench/queries/kdray_side.h"
 #include "bench/race/build_race.h"
-#include "scene/generate/built_in.h"
+#include "bench/workload/scenes.h"
 
 namespace kdray::bench {
 
@@ -134,7 +134,7 @@ class QueriesScene {
   QueriesScene(const QueriesOptions& options, const std::string& name,
                const std::function<void(const std::string&)>& working)
       : options_(options), name_(name), working_(working) {
-    const scene::Scene loaded = generate::load_scene(name);
+    const scene::Scene loaded = load_scene(name);
     mesh_ = mesh_of(loaded, name);
     width_ = glm::length(loaded.bounds().extent());
     device_.device = options.device;

@@ -120,7 +120,7 @@ std::string table_of(const QueriesRun& run) {
 
 Json json_of(std::span<const QueriesRun> runs, const QueriesOptions& options) {
   Json json = {{"command", "bench queries"},
-               {"embree", has_embree(runs) ? Json(embree_version()) : Json()},
+               {"embree", has_embree(runs) ? Json(embree_versions()) : Json()},
                {"rays", options.rays},
                {"repeat", options.repeat},
                {"runs", Json::array()}};

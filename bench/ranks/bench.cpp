@@ -9,8 +9,8 @@
 #include "api/hooks.h"
 #include "api/statistics_json.h"
 #include "base/timer.h"
+#include "bench/workload/scenes.h"
 #include "cluster/transport/ranks.h"
-#include "scene/generate/built_in.h"
 
 namespace kdray::bench {
 
@@ -163,7 +163,7 @@ void measure(RanksRun& run, Team& team, const PreparedScene& scene, const RanksO
 }  // namespace
 
 SceneShelf::Entry::Entry(const std::string& name)
-    : scene(generate::load_scene(name)), prepared(scene, {.binary_form = false}) {}
+    : scene(load_scene(name)), prepared(scene, {.binary_form = false}) {}
 
 struct SceneShelf::Shelved {
   std::mutex mutex;

@@ -12,7 +12,7 @@
 #include "bench/embree/embree.h"
 #include "bench/measure/cores.h"
 #include "bench/race/kdray_contestants.h"
-#include "scene/generate/built_in.h"
+#include "bench/workload/scenes.h"
 
 namespace kdray::bench {
 
@@ -30,6 +30,7 @@ std::vector<int> default_cores() {
 }
 
 RaysOptions resolved(RaysOptions o) {
+  if (o.scenes.empty()) o.scenes = default_scenes();
   if (o.classes.empty()) o.classes = all_of(class_names());
   if (o.traversals.empty()) o.traversals = all_of(traversal_names());
   if (o.cores.empty()) o.cores = default_cores();
@@ -49,7 +50,7 @@ class RaysScene {
  public:
   RaysScene(const RaysOptions& options, const std::string& name,
             const std::function<void(const std::string&)>& working)
-      : options_(options), name_(name), working_(working), scene_(generate::load_scene(name)) {
+      : options_(options), name_(name), working_(working), scene_(load_scene(name)) {
     if (scene_.model().primitive_count() == 0)
       throw Error(ErrorCode::input, name + ": nothing to trace; the scene is empty");
     if (options.embree) embree_ = make_embree_scenes(scene_.model());
@@ -64,7 +65,8 @@ class RaysScene {
     std::array<std::shared_ptr<Renderer>, 2> renderers;
     std::vector<Contestant> contestants;
     for (const std::string& name : options_.traversals) {
-      const bool binary = takes_binary_form(traversal_of(name), Precision::float32);
+      if (name == "binary" && !has_binary()) continue;
+      const bool binary = has_binary() && takes_binary_form(traversal_of(name), Precision::float32);
       auto& renderer = renderers[binary ? 1 : 0];
       if (!renderer)
         renderer = std::make_shared<Renderer>(scene_, TreeOptions{.binary_form = binary}, device);
@@ -82,7 +84,13 @@ class RaysScene {
  private:
   RaysRun described(const nlohmann::json& device) const {
     const scene::Scene& model = scene_.model();
-    return {name_, kind_counts(model), cores_of(device), device.at("name"), device.value("vectors", ""), {}};
+    return {.scene = name_,
+            .n_primitives = kind_counts(model),
+            .n_instances = model.instances.size(),
+            .cores = cores_of(device),
+            .device = device.at("name"),
+            .vectors = device.value("vectors", ""),
+            .classes = {}};
   }
 
   // Once for all numbers of cores, on the whole device: the binary traversal is slow, and its hits are the
@@ -92,13 +100,15 @@ class RaysScene {
     working_(fmt::format("{}: making rays", name_));
     DeviceOptions device;
     device.device = options_.device;
-    Renderer renderer(scene_, TreeOptions{}, device);
-    classes_ = make_classes(
-        scene_.model(), options_.classes, side_of(options_.rays),
-        [&](std::span<const Ray> rays) { return renderer.trace(rays, false, 1, Traversal::binary); });
-    for (const RayClass& c : classes_)
-      references_.push_back(renderer.trace(c.rays, c.any_hit, 1, Traversal::binary));
+    Renderer renderer(scene_, TreeOptions{.binary_form = has_binary()}, device);
+    const Traversal walk = has_binary() ? Traversal::binary : Traversal::wide;
+    classes_ = make_classes(scene_.model(), options_.classes, side_of(options_.rays),
+                            [&](std::span<const Ray> rays) { return renderer.trace(rays, false, 1, walk); });
+    for (const RayClass& c : classes_) references_.push_back(renderer.trace(c.rays, c.any_hit, 1, walk));
   }
+
+  // The binary walk can't follow instances.
+  bool has_binary() const { return scene_.model().instances.empty(); }
 
   ClassResult race_on(const RayClass& c, const std::vector<Hit>& reference,
                       const std::vector<Contestant>& contestants, int cores) {
@@ -113,12 +123,26 @@ class RaysScene {
   std::string name_;
   const std::function<void(const std::string&)>& working_;
   Scene scene_;
-  std::shared_ptr<EmbreeScenes> embree_;
+  EmbreeScenes embree_;
   std::vector<RayClass> classes_;
-  std::vector<std::vector<Hit>> references_;  // of each class, the binary traversal's hits
+  std::vector<std::vector<Hit>>
+      references_;  // of each class, the binary walk's hits, of instances the wide one's
 };
 
 }  // namespace
+
+std::vector<std::string> default_scenes() {
+  std::vector<std::string> names = {"boxes",
+                                    "spheres",
+                                    "balls",
+                                    "rings",
+                                    "meadow",
+                                    "displaced:50000",
+                                    "displaced:200000",
+                                    "displaced:10000000"};
+  for (std::string& name : data_scenes().here) names.push_back(std::move(name));
+  return names;
+}
 
 std::vector<RaysRun> bench_rays(const RaysOptions& options, const std::function<void(const RaysRun&)>& done,
                                 const std::function<void(const std::string&)>& working) {

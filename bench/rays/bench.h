@@ -16,7 +16,7 @@
 namespace kdray::bench {
 
 struct RaysOptions {
-  std::vector<std::string> scenes = {"boxes", "spheres", "balls", "rings"};
+  std::vector<std::string> scenes = {};                    // empty: default_scenes()
   std::vector<std::string> classes = {}, traversals = {};  // empty: all
   int rays = 1 << 20;                                      // of a class, at the most
   int repeat = 7;                                          // rounds
@@ -32,10 +32,15 @@ struct ClassResult {
   std::vector<Outcome> outcomes;
 };
 
+// Primitives of all kinds, a meadow of instances, meshes of 50 thousand to 10 million triangles, and the
+// rooms and scans that are there (bench/workload/scenes.h).
+std::vector<std::string> default_scenes();
+
 // A scene on a number of cores.
 struct RaysRun {
   std::string scene;
   KindCounts n_primitives;
+  std::size_t n_instances = 0;
   int cores = 0;  // as used
   std::string device, vectors;
   std::vector<ClassResult> classes;

@@ -22,12 +22,13 @@ const char* name_of(Family family) {
 
 // Empty when there was none, or when it was left out.
 std::string version_of_embree(const RaysOptions& options) {
-  return options.embree ? embree_version() : "";
+  return options.embree ? embree_versions() : "";
 }
 
 std::string heading(const RaysRun& run) {
-  return fmt::format("{}: {}, {} core{}", std::filesystem::path(run.scene).filename().string(),
-                     in_words(run.n_primitives), run.cores, run.cores == 1 ? "" : "s");
+  const std::string instances = run.n_instances > 0 ? fmt::format(", {} instances", run.n_instances) : "";
+  return fmt::format("{}: {}{}, {} core{}", std::filesystem::path(run.scene).filename().string(),
+                     in_words(run.n_primitives), instances, run.cores, run.cores == 1 ? "" : "s");
 }
 
 // How many times as fast as `other`, or 0 when one is missing.
@@ -45,7 +46,7 @@ struct RayRatios {
 };
 
 std::string cell(double value) {
-  return value > 0 ? fmt::format("{:8.2f}", value) : fmt::format("{:>8}", "-");
+  return value > 0 ? fmt::format("{:9.2f}", value) : fmt::format("{:>9}", "-");
 }
 
 std::string rates_line(const ClassResult& c) {
@@ -62,8 +63,8 @@ std::string rates(const RaysRun& run) {
     for (const Outcome& o : c.outcomes) {
       const bool first = before == nullptr || before->family != o.family;
       const std::string family = first ? name_of(o.family) : "";
-      families += fmt::format(" {:<7}", family.substr(family.find(' ') + 1));
-      modes += fmt::format("{:>8}", o.mode);
+      families += fmt::format("  {:<7}", family.substr(family.find(' ') + 1));
+      modes += fmt::format("{:>9}", o.mode);
       before = &o;
     }
     break;
@@ -83,7 +84,7 @@ std::string spread_in_words(const Outcome* o, std::size_t n_rays) {
 
 std::string ratios(const RaysRun& run) {
   std::string out =
-      fmt::format("  {:<10}{:>26}{:>26}{:>26}{:>8}{:>8}{:>8}{:>8}{:>8}\n", "best, min-max", "kdray       ",
+      fmt::format("  {:<10}{:>26}{:>26}{:>26}{:>9}{:>9}{:>9}{:>9}{:>9}\n", "best, min-max", "kdray       ",
                   "Embree fast      ", "Embree robust     ", "k/fast", "k/rob", "a/fast", "a/rob", "a/fixed");
   for (const ClassResult& c : run.classes) {
     if (c.outcomes.empty()) {
@@ -142,9 +143,10 @@ Json json_of(const ClassResult& c) {
 }
 
 Json json_of(const RaysRun& run) {
-  Json json = {{"scene", run.scene},     {"primitives", json_of(run.n_primitives)},
-               {"cores", run.cores},     {"device", run.device},
-               {"vectors", run.vectors}, {"classes", Json::array()}};
+  Json json = {{"scene", run.scene},           {"primitives", json_of(run.n_primitives)},
+               {"instances", run.n_instances}, {"cores", run.cores},
+               {"device", run.device},         {"vectors", run.vectors},
+               {"classes", Json::array()}};
   for (const ClassResult& c : run.classes) json["classes"].push_back(json_of(c));
   return json;
 }

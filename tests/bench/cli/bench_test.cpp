@@ -26,7 +26,7 @@ TEST(BenchRays, WritesTableFiguresAndPlot) {
   EXPECT_EQ(json["not_identical"], 0);
   ASSERT_EQ(json["runs"].size(), 1u);
   const Json& bench_run = json["runs"][0];
-  expect_keys(bench_run, {"scene", "primitives", "cores", "device", "vectors", "classes"});
+  expect_keys(bench_run, {"scene", "primitives", "instances", "cores", "device", "vectors", "classes"});
   ASSERT_EQ(bench_run["classes"].size(), 7u);
   for (const Json& c : bench_run["classes"]) {
     expect_keys(c, {"name", "any_hit", "rays", "hits", "contestants", "ratios"});
@@ -56,6 +56,17 @@ TEST(BenchRays, LeavesEmbreeOutWhenTold) {
   EXPECT_EQ(folder.get("rays.svg").find("Embree"), std::string::npos);
 }
 
+TEST(BenchRays, RefusesAnEmbreeThatIsNone) {
+  KDRAY_NEED_DEVICE();
+  const std::vector<std::string> arguments = {"bench",    "rays", "tetra",     "--rays", "64",
+                                              "--repeat", "1",    "--classes", "primary"};
+  const auto with = [&](const std::string& file) {
+    return kdray(arguments, {.environment = {{"KDRAY_EMBREE", file}}});
+  };
+  EXPECT_TRUE(fails_with(with("/nowhere/libembree4.so"), 1, "/nowhere/libembree4.so"));
+  EXPECT_TRUE(fails_with(with("libm.so.6"), 1, "no Embree: it has no rtcNewDevice"));
+}
+
 // As on a machine whose python3 has no matplotlib, or that has no python3.
 TEST(BenchRays, FiguresAreThereWhereNoPlotCanBeDrawn) {
   KDRAY_NEED_DEVICE();
@@ -83,7 +94,7 @@ TEST(BenchFrames, WritesTableFiguresAndPlot) {
   ASSERT_EQ(json["frames"].size(), 1u);
   const Json& frame = json["frames"][0];
   expect_keys(frame, {"scene", "primitives", "cores", "device", "seconds", "mrays_per_s", "stages", "rays",
-                      "povray_seconds", "povray_ratio", "embree_primary_mrays_per_s"});
+                      "povray_seconds", "povray_ratio", "embree", "embree_ratio"});
   EXPECT_EQ(frame["rays"]["primary"], 32 * 24);
   expect_plot(run, folder, "report/frames.svg", ">small<");
 }

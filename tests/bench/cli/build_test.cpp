@@ -71,14 +71,18 @@ TEST(BenchBuild, HasEmbreeWhereItIs) {
   const Json& builders = json["runs"][0]["builders"];
   if (json["embree"].is_null()) {
     EXPECT_EQ(builders.size(), 3u);
-    GTEST_SKIP() << "built without Embree";
+    GTEST_SKIP() << "no Embree is found";
   }
-  ASSERT_EQ(builders.size(), 4u);
-  EXPECT_EQ(builders[3]["builder"], "Embree medium");
-  EXPECT_TRUE(builders[3]["tree"].is_null());
-  expect_times(builders[3]["seconds"]);
-  EXPECT_EQ(builders[3]["traces"].size(), 3u);
-  EXPECT_EQ(builders[3]["times_embree"], 1.0);
+  ASSERT_GT(builders.size(), 3u);
+  double fastest = 1e9;
+  for (std::size_t i = 3; i < builders.size(); ++i) {
+    EXPECT_EQ(builders[i]["builder"].get<std::string>().substr(0, 7), "Embree ");
+    EXPECT_TRUE(builders[i]["tree"].is_null());
+    expect_times(builders[i]["seconds"]);
+    EXPECT_EQ(builders[i]["traces"].size(), 3u);
+    fastest = std::min(fastest, builders[i]["times_embree"].get<double>());
+  }
+  EXPECT_EQ(fastest, 1.0);
   for (const Json& b : builders) {
     EXPECT_GT(b["times_embree"], 0.0);
     EXPECT_GT(b["cpu_times_embree"], 0.0);

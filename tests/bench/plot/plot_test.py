@@ -33,7 +33,7 @@ def frame(scene, rate):
         "device": "a device",
         "rays": {"total": 2e6},
         "mrays_per_s": spread(rate),
-        "embree_primary_mrays_per_s": None,
+        "embree": [],
         "povray_seconds": spread(4.0),
     }
 

@@ -42,7 +42,7 @@ QuerySet rays(std::size_t n) {
 }
 
 TEST(BenchQueries, SidesAnswerAlike) {
-  if (embree_version().empty()) GTEST_SKIP() << "built without Embree";
+  if (embree_versions().empty()) GTEST_SKIP() << "no Embree is found";
   KDRAY_NEED_DEVICE();
   const MeshArrays mesh = lump();
   const QuerySet set = rays(3001);  // no whole number of packets or grains
@@ -66,7 +66,7 @@ TEST(BenchQueries, SidesAnswerAlike) {
 }
 
 TEST(BenchQueries, CountsAreTheLengthsOfLists) {
-  if (embree_version().empty()) GTEST_SKIP() << "built without Embree";
+  if (embree_versions().empty()) GTEST_SKIP() << "no Embree is found";
   const MeshArrays mesh = lump();
   const QuerySet set = rays(2000);
   for (const Side& side : embree_sides(mesh, 2))
