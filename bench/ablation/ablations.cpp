@@ -24,6 +24,7 @@ constexpr Rule kRules[] = {
     {KDRAY_KEEP_BEHIND, "shadow rays to lights behind", KDRAY_FEATURE_LIGHTS},
     {KDRAY_KEEP_UNLIT, "shadow rays of no light", KDRAY_FEATURE_LIGHTS},
     {KDRAY_KEEP_OPEN, "rays that pass the core by", KDRAY_FEATURE_FACES},
+    {KDRAY_KEEP_EMPTY, "eye rays of empty blocks", 0},
     {KDRAY_KEEP_LEFT, "the triangle a ray leaves", KDRAY_FEATURE_KIND(TRIANGLE)},
     {KDRAY_KEEP_WEIGHTLESS, "secondary rays of no weight", kSecondary},
 };

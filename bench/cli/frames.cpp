@@ -19,7 +19,6 @@ using FramesCommand = BenchCommand<bench::FramesOptions>;
 
 int run(const FramesCommand& c) {
   require_scenes(c.options.scenes);
-  say_without_embree();
   if (!bench::has_povray()) say("povray is not installed: its times are left out");
   run_bench("frames", c.options, c.report, bench::bench_frames);
   return 0;
@@ -29,12 +28,13 @@ int run(const FramesCommand& c) {
 
 Command add_bench_frames(CLI::App& bench) {
   CLI::App* const app =
-      bench.add_subcommand("frames", "Whole frames with the time of each stage, and POV-Ray's");
+      bench.add_subcommand("frames", "Whole frames with the time of each stage, Embree's and POV-Ray's");
   const auto c = std::make_shared<FramesCommand>();
   bench::FramesOptions& o = c->options;
   add_scenes(*app, o.scenes);
   add_picture_size(*app, kRaysMax, o.width, o.height);
   add_depth(*app, o.depth);
+  add_no_embree(*app, o.embree);
   add_usual(*app, *c);
   return {app, [c] { return run(*c); }};
 }

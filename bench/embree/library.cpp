@@ -10,11 +10,11 @@
 #include "base/error.h"
 
 #if defined(__has_feature)
-#if __has_feature(address_sanitizer)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 #define KDRAY_HAS_SANITIZER
 #endif
 #endif
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define KDRAY_HAS_SANITIZER
 #endif
 
@@ -23,7 +23,7 @@ namespace kdray::bench::embree {
 namespace {
 
 // Embree and what it is linked with find their own symbols first: two Embrees have the same names, and one of
-// a Python package brings a TBB along. The address sanitizer's loader refuses that.
+// a Python package brings a TBB along. Sanitizers refuse that.
 #if defined(KDRAY_HAS_SANITIZER)
 constexpr int kMode = RTLD_NOW | RTLD_LOCAL;
 #else

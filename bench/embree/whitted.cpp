@@ -239,7 +239,7 @@ class Whitted {
   void go_on(const Path& path, const Surface& s, const vec3& direction, const vec3& share,
              Bench& bench) const {
     const vec3 weight = path.weight * share;
-    if (largest(weight) > 0 && largest(weight) >= static_cast<float>(options_.min_weight))
+    if (largest(weight) > 0 && largest(weight) >= static_cast<float>(options_.spawn_threshold))
       bench.next.push_back({s.point, glm::normalize(direction), weight, path.pixel});
   }
 

@@ -1,5 +1,5 @@
 // What    Whole frames by Embree, for NFF's model (docs/scenes.md): eye rays, shadow rays to each point
-//         light, reflection, refraction, as deep and to the same least weight as kdray's.
+//         light, reflection, refraction.
 // Shape   A tile of 16 x 16 pixels at a time, generation by generation; all rays in packets of 16, eye and
 //         shadow rays flagged as coherent, shadow rays light by light. Tiles are dealt out by TBB. Fast
 //         scenes.
@@ -16,7 +16,7 @@ namespace kdray::bench {
 
 struct EmbreeFrameOptions {
   int width = 0, height = 0, depth = 0;
-  double min_weight = 0;
+  double spawn_threshold = 0;  // the least weight of a ray
   int threads = 1;
 };
 

@@ -47,9 +47,7 @@ class FrameBench {
     facts_ = api::device_json(renderer_->statistics());
     cores_ = cores_of(facts_);
     if (!is_nff(name)) return;
-    embree_ = embree_frames(scene_.model(),
-                            {options.width, options.height, options.depth, kDefaultMinWeight, cores_});
-    embree_seconds_.resize(embree_.size());
+    if (options.embree) make_embree();
     if (has_povray())
       povray_ = std::make_unique<Povray>(scene_.model(), options.width, options.height, options.depth,
                                          kDefaultMinWeight);
@@ -61,16 +59,30 @@ class FrameBench {
   }
 
  private:
-  // Round -1 warms up and is not counted.
-  void run_round(int round) {
+  RenderOptions render_options() const {
     RenderOptions o;
     o.width = options_.width, o.height = options_.height, o.depth = options_.depth;
-    renderer_->render(o);
+    return o;
+  }
+
+  // A frame of kdray's tells from which weight on it makes rays.
+  void make_embree() {
+    renderer_->render(render_options());
+    const float threshold = renderer_->statistics().frame->spawn_threshold;
+    embree_ =
+        embree_frames(scene_.model(), {options_.width, options_.height, options_.depth, threshold, cores_});
+    embree_seconds_.resize(embree_.size());
+    n_embree_rays_.resize(embree_.size());
+  }
+
+  // Round -1 warms up and is not counted.
+  void run_round(int round) {
+    renderer_->render(render_options());
     const Statistics& statistics = renderer_->statistics();
     for (std::size_t i = 0; i < embree_.size(); ++i) {
       const EmbreePicture picture = embree_[i].render();
       if (round >= 0) embree_seconds_[i].push_back(picture.seconds);
-      n_embree_rays_ = picture.n_rays;
+      n_embree_rays_[i] = picture.n_rays;
     }
     const bool with_povray = povray_ && round < kPovrayRounds;
     const double povray = with_povray ? povray_->trace_seconds(cores_) : 0;
@@ -94,7 +106,7 @@ class FrameBench {
     for (const char* const kind : {"primary", "shadow", "reflected", "refracted", "total"})
       r.rays[kind] = rays_.at(kind);
     for (std::size_t i = 0; i < embree_.size(); ++i)
-      r.embree.push_back({embree_[i].name, spread_of(embree_seconds_[i]), n_embree_rays_});
+      r.embree.push_back({embree_[i].name, spread_of(embree_seconds_[i]), n_embree_rays_[i]});
     if (povray_) r.povray_seconds = spread_of(povray_seconds_);
     return r;
   }
@@ -107,7 +119,7 @@ class FrameBench {
   int cores_ = 0;
   std::vector<EmbreeFrames> embree_;
   std::vector<std::vector<double>> embree_seconds_;
-  std::uint64_t n_embree_rays_ = 0;
+  std::vector<std::uint64_t> n_embree_rays_;
   std::unique_ptr<Povray> povray_;
   std::map<std::string, std::vector<double>> seconds_;
   std::vector<double> povray_seconds_;

@@ -21,6 +21,7 @@ struct FramesOptions {
   std::vector<std::string> scenes = {"balls", "gears", "mount", "rings", "teapot", "tetra", "tree"};
   int width = 1024, height = 1024, depth = 5;
   int repeat = 7;
+  bool embree = true;  // beside kdray, where there is one
   std::string device = "auto";
 };
 

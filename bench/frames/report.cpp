@@ -64,7 +64,7 @@ std::string table_of(const FrameResult& f) {
 }
 
 Json json_of(std::span<const FrameResult> frames, const FramesOptions& options) {
-  const std::string embree = embree_versions();
+  const std::string embree = options.embree ? embree_versions() : "";
   Json json = {{"command", "bench frames"},
                {"embree", embree.empty() ? Json() : Json(embree)},
                {"size", {options.width, options.height}},

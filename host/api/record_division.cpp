@@ -76,6 +76,7 @@ FrameResult common_result_of(Result& result, const State& state) {
   division.bands = result.n_bands;
   division.launches = result.counters.launches;
   division.waves = result.counters.waves;
+  division.samples_of_empty_blocks = result.counters.of_empty_blocks;
   for (const frame::QueueReport& queue : result.queues) {
     division.per_queue.push_back(queue_told(queue, result.render_seconds));
     if (state.ranks) division.per_queue.back().rank = queue.rank;

@@ -145,6 +145,7 @@ Json division_json(const Statistics::Division& d) {
                    {"bands", d.bands},
                    {"launches", d.launches},
                    {"waves", d.waves},
+                   {"samples_of_empty_blocks", d.samples_of_empty_blocks},
                    {"schedule", d.schedule},
                    {"quarantined", Json::array()},
                    {"per_queue", Json::array()}};

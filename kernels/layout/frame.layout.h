@@ -112,11 +112,12 @@ typedef struct Slice {
   u64 n_invalid;             // rays whose traversal failed
   u64 n_nan;                 // contributions that were not numbers
   u64 n_pool_overflow;       // spawned rays that found no place: a broken bound
+  u64 n_of_empty_blocks;     // of n_primary: not made, since their block of pixels sees nothing
   u64 cycles_admit, cycles_closest, cycles_shade, cycles_shadow, cycles_add;  // wave.cl
   // For closest hits and for any, by depth: how often the distance that a packet's rays may start apart was
   // halved (traverse/learn.clh).
   u8 halvings[2][KDRAY_MAX_DEPTH + 1];
-  u8 pad2[54];  // no two slices share a line of a cache
+  u8 pad2[46];  // no two slices share a line of a cache
 } Slice;
 KDRAY_ASSERT_SIZE(Slice, 640)
 KDRAY_ASSERT_OFFSET(Slice, n_primary, 296)

@@ -21,12 +21,14 @@
 #define KDRAY_KEEP_WEIGHTLESS 0x0040ul  // secondary rays of no weight
 #define KDRAY_KEEP_LEFT 0x0080ul        // rays against the triangle that they leave
 #define KDRAY_KEEP_OPEN 0x0100ul        // rays that surely meet nothing (shade/open.clh)
+// Eye rays.
+#define KDRAY_KEEP_EMPTY 0x0200ul  // those of blocks of pixels that see nothing (raygen/empty_blocks.clh)
 
 #define KDRAY_KEEP_TRACING \
   (KDRAY_KEEP_FRUSTUM | KDRAY_KEEP_OCCLUDER | KDRAY_KEEP_NEARNESS | KDRAY_KEEP_BEYOND)
 #define KDRAY_KEEP_SHADING \
   (KDRAY_KEEP_BEHIND | KDRAY_KEEP_UNLIT | KDRAY_KEEP_WEIGHTLESS | KDRAY_KEEP_LEFT | KDRAY_KEEP_OPEN)
-#define KDRAY_KEEP_ALL (KDRAY_KEEP_TRACING | KDRAY_KEEP_SHADING)
+#define KDRAY_KEEP_ALL (KDRAY_KEEP_TRACING | KDRAY_KEEP_SHADING | KDRAY_KEEP_EMPTY)
 
 #define KDRAY_SKIPS(rule) ((KDRAY_FEATURES & KDRAY_KEEP_##rule) == 0)
 #endif

@@ -28,7 +28,7 @@ KDRAY_APART void take_waves(u32 slice_id, KDRAY_PARAMETERS(KDRAY_WAVE_ARGUMENTS)
     const u64 start = since;
     // Behind the list's end a slice still works on what its last tile left in the pool.
     const u32 tile = slice->tile < n_tiles ? slice->tile : slice->tile - slice->tile_stride;
-    admit_batch(frame, slice_id, slice, list, io_pool, io_batch, io_film);
+    admit_batch(frame, &scene, slice_id, slice, list, io_pool, io_batch, io_film);
     clock_stage(&slice->cycles_admit, &since);
     if (slice->n_batch == 0) return;
     const RaySource rays = batch_rays(frame, slice_id, io_batch, io_hits);

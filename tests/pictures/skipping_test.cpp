@@ -9,6 +9,8 @@
 #include "oracle/build_scene.h"
 #include "pictures/render.h"
 #include "pictures/scenes.h"
+#include "scene/generate/random.h"
+#include "scene/generate/rotation.h"
 
 namespace kdray::test {
 namespace {
@@ -29,6 +31,10 @@ Picture keeping(Renderer& renderer, std::uint32_t rules,
 
 std::uint64_t skipped(const Renderer& renderer, const char* why) {
   return statistics_of(renderer)["rays"]["skipped"][why];
+}
+
+std::uint64_t empty_samples(const Renderer& renderer) {
+  return statistics_of(renderer)["mode"]["samples_of_empty_blocks"];
 }
 
 // A mirroring floor with a sphere and a cone on it, seen from just above; lights high and low, near and far,
@@ -59,7 +65,8 @@ TEST_P(EachRule, ChangesNoBit) {
 INSTANTIATE_TEST_SUITE_P(Skipping, EachRule,
                          testing::Values(KDRAY_KEEP_FRUSTUM, KDRAY_KEEP_OCCLUDER, KDRAY_KEEP_NEARNESS,
                                          KDRAY_KEEP_BEYOND, KDRAY_KEEP_BEHIND, KDRAY_KEEP_UNLIT,
-                                         KDRAY_KEEP_WEIGHTLESS, KDRAY_KEEP_LEFT, KDRAY_KEEP_OPEN));
+                                         KDRAY_KEEP_WEIGHTLESS, KDRAY_KEEP_LEFT, KDRAY_KEEP_OPEN,
+                                         KDRAY_KEEP_EMPTY));
 
 class AllRules : public testing::TestWithParam<NamedScene> {};
 
@@ -134,6 +141,102 @@ TEST(Skipping, TracesEverythingWithoutLeastWeight) {
   o.min_weight = 0;
   keeping(renderer, 0, o);
   EXPECT_EQ(skipped(renderer, "light_in_the_open") + skipped(renderer, "of_the_background"), 0u);
+  EXPECT_EQ(empty_samples(renderer), 0u);
+}
+
+// Balls about few places, so that each place is a leaf of its own, and blocks of pixels lie between them;
+// some are less than a pixel wide.
+scene::Scene balls_in_the_open(std::uint64_t seed) {
+  constexpr int kPlaces = 400, kOfOne = 12;
+  generate::Random random(seed);
+  scene::Material glow = oracle::matte(vec3(0.5f));
+  glow.emission = vec3(0.7f, 0.5f, 0.2f), glow.reflect = vec3(0.3f);
+  oracle::SceneBuilder b;
+  for (int i = 0; i < kPlaces; ++i) {
+    const dvec3 at = random.in_box(dvec3(-10), dvec3(10));
+    const double radius = random.between(0.01, 0.06);
+    for (int k = 0; k < kOfOne; ++k) b.sphere(at, radius * (1 - 0.01 * k), glow);
+  }
+  b.background({0.1f, 0.3f, 0.6f});
+  return b.scene();
+}
+
+// From without and within, along the axes and aslant, narrow as a needle and wide, parallel, through the
+// pixels' corners, with several samples, in tiles of other sizes, by two queues; rays of the pool wait while
+// the last tiles are empty.
+class EmptyBlocks : public testing::TestWithParam<int> {};
+
+TEST_P(EmptyBlocks, ChangeNoBit) {
+  const auto seed = static_cast<std::uint64_t>(GetParam());
+  generate::Random random(seed);
+  scene::Scene model = balls_in_the_open(seed);
+  std::uint64_t n_empty = 0;
+  for (int i = 0; i < 8; ++i) {
+    scene::Camera camera{.from = 40.0 * random.direction(), .at = random.in_box(dvec3(-5), dvec3(5))};
+    camera.vertical_fov = i == 5 ? 0.001 : i == 6 ? 2.6 : random.between(0.1, 1.2);
+    if (i == 1) camera.from = {0, 0, 30}, camera.at = dvec3(0);
+    if (i == 2) camera.from = dvec3(0.5), camera.at = {0.5, 0.5, -9};
+    if (i == 3) camera.ortho_width = 25;
+    model.camera = camera;
+    const Scene scene{scene::Scene(model)};
+    Renderer renderer(scene, {}, device_of({.queues = i == 6 ? 2 : 1}));
+    RenderOptions o = exact_options(300 + 7 * i, 200);
+    o.samples = i == 0 || i == 4 ? 16 : i == 6 ? 3 : 1;
+    o.grid = i == 7 ? PixelGrid::corners : PixelGrid::centers;
+    if (i % 4 == 1) o.tile_width = 37, o.tile_height = 20;
+    if (i % 4 == 3) o.tile_width = 4, o.tile_height = 9;
+    const Picture usual = keeping(renderer, 0, o);
+    const std::uint64_t empty = empty_samples(renderer);
+    EXPECT_EQ(statistics_of(renderer)["rays"]["primary"], o.width * o.height * o.samples);
+    EXPECT_TRUE(i != 3 || empty == 0) << "a parallel camera";
+    if (statistics_of(renderer)["mode"]["schedule"] != "slices")
+      GTEST_SKIP() << "only slices pass over blocks";
+    n_empty += empty;
+    EXPECT_TRUE(same_bits(usual, keeping(renderer, KDRAY_KEEP_EMPTY, o))) << "seed " << seed << ", " << i;
+    EXPECT_EQ(empty_samples(renderer), 0u);
+  }
+  EXPECT_GT(n_empty, 100000u) << "seed " << seed;
+}
+
+INSTANTIATE_TEST_SUITE_P(Skipping, EmptyBlocks, testing::Range(20261128, 20261132));
+
+// Instances that are stretched one to thirty: boxes are widened by more (host/accel/flatten/instances.h).
+TEST(Skipping, EmptyBlocksOfStretchedInstancesChangeNoBit) {
+  generate::Random random(20261128);
+  scene::Scene model = balls_in_the_open(1);
+  auto mesh = std::make_shared<scene::Scene>();
+  mesh->name = "ball";
+  mesh->spheres = {model.spheres.begin(), model.spheres.begin() + 12};
+  for (auto& ball : mesh->spheres) ball.center = dvec3(0);
+  model.spheres.clear();
+  model.meshes.push_back(mesh);
+  for (int i = 0; i < 300; ++i) {
+    scene::Instance instance;
+    const double angle = random.between(0, 3);
+    instance.linear =
+        generate::rotation_y(angle) * generate::rotation_x(2 * angle) * dmat3(6, 0, 0, 0, 0.2, 0, 0, 0, 1);
+    instance.move = random.in_box(dvec3(-10), dvec3(10));
+    model.instances.push_back(instance);
+  }
+  model.camera = scene::Camera{.from = {25, 9, 30}, .at = {0, 0, 0}, .vertical_fov = 0.6};
+  const Scene scene{std::move(model)};
+  Renderer renderer(scene, {}, device_of());
+  RenderOptions o = exact_options(300, 200);
+  o.samples = 16;
+  const Picture usual = keeping(renderer, 0, o);
+  if (statistics_of(renderer)["mode"]["schedule"] != "slices") GTEST_SKIP() << "only slices pass over blocks";
+  EXPECT_GT(empty_samples(renderer), 1000u);
+  EXPECT_TRUE(same_bits(usual, keeping(renderer, KDRAY_KEEP_EMPTY, o)));
+}
+
+TEST(Skipping, AnEmptySceneIsAllBackground) {
+  scene::Scene model =
+      oracle::SceneBuilder().background({0.25f, 0.5f, 1}).camera({0, 0, 5}, {0, 0, 0}).scene();
+  const Scene scene{std::move(model)};
+  Renderer renderer(scene, {}, device_of());
+  const Picture picture = keeping(renderer, 0);
+  for (std::size_t i = 0; i < picture.rgb.size(); ++i)
+    ASSERT_EQ(picture.rgb[i], i % 3 == 0 ? 0.25f : i % 3 == 1 ? 0.5f : 1.0f);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@ namespace kdray::pdprt {
 namespace {
 
 // Shorter launches than this are not worth their report.
+constexpr double kLeastOfGuess = 1.0 / 16;  // waves of a tile
 constexpr double kShortestSeconds = 0.0003;
 
 layout::Frame scheduled(layout::Frame frame, const wavefront::Schedule& schedule, layout::Features features) {
@@ -97,7 +98,8 @@ std::optional<std::span<const layout::u32>> Queue::more(Tiles& tiles, const wave
   if (since_begin_.seconds() > work.seconds) return std::span<const layout::u32>();
   const std::size_t ahead = tiles.taken(number_).size() - progress.front;
   const bool measured = progress.taken > 0;
-  if (measured) waves_per_tile_ = static_cast<double>(progress.waves) / progress.taken;
+  if (measured)
+    waves_per_tile_ = std::max(static_cast<double>(progress.waves) / progress.taken, least_waves_per_tile_);
   // The launch that is running takes as much as it can of what there is. The one to be queued is to find all
   // it can take, and more, when that is known: a slice that runs dry traces its last rays in batches that
   // aren't full.
@@ -118,6 +120,7 @@ std::size_t Queue::tiles_of_launch() const {
 
 void Queue::serve(Tiles& tiles, const Work& work, Shared& shared) {
   waves_per_tile_ = work.samples.empty() ? guessed_waves(frame_) : kWavesOfRun / frame_.batch_size;
+  least_waves_per_tile_ = kLeastOfGuess * waves_per_tile_;
   while (tiles.wait(number_)) {
     n_told_ = 0;
     busy_before_ = wavefront_.busy_seconds();

@@ -62,7 +62,8 @@ class Queue {
   std::size_t number_;
   layout::Frame frame_;
   std::uint32_t n_slices_;
-  double waves_per_launch_, waves_per_tile_;  // the latter as measured so far
+  double waves_per_launch_, waves_per_tile_;  // the latter as measured so far, and no less than this:
+  double least_waves_per_tile_ = 0;           // since empty tiles take none
   std::uint32_t compute_units_;
   std::optional<device::Clock> clock_;
   wavefront::Wavefront wavefront_;

@@ -34,13 +34,14 @@
   KDRAY_COUNTERS_OF_TRACED(X)  \
   KDRAY_COUNTERS_OF_SKIPPED(X) \
   KDRAY_COUNTERS_OF_FAULTS(X)  \
-  X(waves, n_waves, "waves")
+  X(waves, n_waves, "waves")   \
+  X(of_empty_blocks, n_of_empty_blocks, "samples_of_empty_blocks")
 
 namespace kdray::wavefront {
 
 struct Counters {
 #define KDRAY_COUNTER(name, field, key) std::uint64_t name = 0;
-  KDRAY_COUNTERS(KDRAY_COUNTER)  // waves: of one slice, with rays in them
+  KDRAY_COUNTERS(KDRAY_COUNTER)  // waves: of one slice, with rays in them; of empty blocks: of primary
 #undef KDRAY_COUNTER
   std::uint64_t launches = 0;  // counted by the host
 

@@ -59,7 +59,9 @@ layout::Features bits_read_by(const std::string& file) {
   if (file == "film/add.cl") return KDRAY_FEATURE_INSTANCES;
   if (file == "film/channels.cl") return kGeometry | kTexturing | KDRAY_FEATURE_SMOOTH | KDRAY_FEATURE_COST;
   if (file == "shade/shade.cl" || file == "odprt/stages/shade.cl") return kShading;
-  if (file == "wave/wave.cl" || file == "odprt/wave.cl")
+  if (file == "wave/wave.cl")
+    return kShading | KDRAY_FEATURE_SUPERSAMPLE | KDRAY_FEATURE_ADAPTIVE | kSamples | KDRAY_KEEP_EMPTY;
+  if (file == "odprt/wave.cl")
     return kShading | KDRAY_FEATURE_SUPERSAMPLE | KDRAY_FEATURE_ADAPTIVE | kSamples;
   if (file == "odprt/receive.cl" || file == "odprt/stages/receive.cl")
     return KDRAY_FEATURE_FOOTPRINTS | KDRAY_FEATURE_AREA_LIGHTS | KDRAY_FEATURE_INSTANCES;

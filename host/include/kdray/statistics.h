@@ -166,6 +166,7 @@ struct Statistics {
     std::uint64_t sub_devices = 0, programs = 0, programs_known = 0;
     std::uint32_t tile_width = 0, tile_height = 0, tiles = 0, bands = 0;
     std::uint64_t launches = 0, waves = 0;
+    std::uint64_t samples_of_empty_blocks = 0;  // of primary: the picture shows nothing there
     std::vector<Queue> per_queue;
     std::vector<Quarantined> quarantined;
     std::optional<Pdprt> pdprt;

@@ -113,8 +113,9 @@ TEST_P(EmbreeFramesOf, AreKdraysPictures) {
                        skipped = rays.at("skipped");
   const double n_rays = rays.at("total").get<double>() + skipped.at("light_in_the_open").get<double>() +
                         skipped.at("of_the_background").get<double>();
-  for (const EmbreeFrames& frames :
-       embree_frames(scene.model(), {options.width, options.height, options.depth, kDefaultMinWeight, 2})) {
+  for (const EmbreeFrames& frames : embree_frames(
+           scene.model(),
+           {options.width, options.height, options.depth, renderer.statistics().frame->spawn_threshold, 2})) {
     const EmbreePicture other = frames.render();
     ASSERT_EQ(other.rgb.size(), picture.rgb.size() / 3);
     std::size_t n_other = 0;

@@ -15,6 +15,7 @@ namespace {
 
 class BenchScenes : public testing::Test {
  protected:
+  void SetUp() override { unsetenv("KDRAY_DATA"); }
   void TearDown() override { unsetenv("KDRAY_DATA"); }
 };
 

@@ -21,6 +21,7 @@ layout::Slice counted() {
   s.n_skipped_behind = 32, s.n_skipped_unlit = 64, s.n_skipped_open = 128, s.n_skipped_background = 256;
   s.n_skipped_weight = 512, s.n_skipped_depth = 1024;
   s.n_invalid = 2048, s.n_nan = 4096, s.n_pool_overflow = 8192, s.n_waves = 16384;
+  s.n_of_empty_blocks = 32768;
   return s;
 }
 
@@ -29,7 +30,8 @@ void expect_times(const Counters& c, std::uint64_t times) {
   const std::uint64_t found[] = {
       c.primary,        c.primary_hit,   c.shadow,       c.reflected,          c.refracted,
       c.skipped_behind, c.skipped_unlit, c.skipped_open, c.skipped_background, c.skipped_weight,
-      c.skipped_depth,  c.invalid,       c.nan,          c.pool_overflow,      c.waves};
+      c.skipped_depth,  c.invalid,       c.nan,          c.pool_overflow,      c.waves,
+      c.of_empty_blocks};
   std::uint64_t wanted = times;
   for (const std::uint64_t n : found) {
     EXPECT_EQ(n, wanted);
