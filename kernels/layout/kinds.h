@@ -12,7 +12,8 @@
   F(X, SPHERE, sphere, spheres, Sphere) \
   F(X, CONE, cone, cones, Cone)         \
   F(X, DISC, disc, discs, Disc)         \
-  F(X, TORUS, torus, tori, Torus)
+  F(X, TORUS, torus, tori, Torus)       \
+  F(X, CAPSULE, capsule, capsules, Capsule)
 
 #define KDRAY_KINDS_WITH(F, X)                  \
   F(X, TRIANGLE, triangle, triangles, Triangle) \
@@ -28,6 +29,7 @@
 #define KDRAY_KIND_CONE 2u
 #define KDRAY_KIND_DISC 3u
 #define KDRAY_KIND_TORUS 4u
+#define KDRAY_KIND_CAPSULE 5u
 
 #define KDRAY_COUNT_KIND(NAME, name, names, Struct) +1
 #define KDRAY_N_KINDS (0u KDRAY_KINDS(KDRAY_COUNT_KIND))

@@ -1,6 +1,7 @@
 // What    Primitives of all kinds as the kernels read them. One line for each kind.
 #ifndef KDRAY_LAYOUT_PRIMITIVES_H
 #define KDRAY_LAYOUT_PRIMITIVES_H
+#include "primitives/capsule/capsule.layout.h"
 #include "primitives/cone/cone.layout.h"
 #include "primitives/disc/disc.layout.h"
 #include "primitives/sphere/sphere.layout.h"

@@ -16,6 +16,7 @@
 //           meets_again (whether a hit at t is surely none of a ray that has just left it towards `side`).
 #pragma once
 
+#include "scene/primitives/capsule.h"
 #include "scene/primitives/cone.h"
 #include "scene/primitives/disc.h"
 #include "scene/primitives/kinds.h"
