@@ -86,7 +86,7 @@ array::TableFormat format_of(const std::string& output, Question question) {
   return array::TableFormat::npz;
 }
 
-void check_walk(Question question, Traversal traversal, Precision precision, Precision geometry) {
+void check_walk(Question question, Traversal traversal, Precision precision, VertexPrecision geometry) {
   const bool is_closest_point = question == Question::closest_point;
   if (traversal != Traversal::automatic && is_closest_point)
     refuse("--traversal is how rays walk the tree, and --closest-point has a walk of its own; leave it out");
@@ -100,11 +100,11 @@ void check_walk(Question question, Traversal traversal, Precision precision, Pre
         fmt::format("--precision double is for closest and any hits; {} decides in double by itself what "
                     "float leaves open; leave it out",
                     name_of(question)));
-  if (geometry == Precision::float64 &&
+  if (geometry != VertexPrecision::float32 &&
       (traversal != Traversal::automatic || precision == Precision::float64))
     refuse(
-        "--geometry double is answered by exact arithmetic and has a walk of its own; leave --traversal and "
-        "--precision out");
+        "--geometry double (or auto) is answered by exact arithmetic and has a walk of its own; leave "
+        "--traversal and --precision out");
 }
 
 }  // namespace kdray::cli

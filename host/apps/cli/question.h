@@ -46,6 +46,6 @@ TraceRequest request_of(const QuestionArgs& args);
 array::TableFormat format_of(const std::string& output, Question question);
 
 // Throws for a walk, or a precision of kernels or geometry, in which there is no answer to that question.
-void check_walk(Question question, Traversal traversal, Precision precision, Precision geometry);
+void check_walk(Question question, Traversal traversal, Precision precision, VertexPrecision geometry);
 
 }  // namespace kdray::cli

@@ -142,7 +142,7 @@ int run(const TraceArgs& o) {
   array::RowsFile file(request.file, request.wanted());
   // Closest and any hits of floats, which are on the devices before the time counts.
   const bool by_renderer =
-      is_plain(request.question) && !file.in_double() && o.tree.geometry == Precision::float32;
+      is_plain(request.question) && !file.in_double() && o.tree.geometry == VertexPrecision::float32;
   const RequestedRows rows(file, request, free_memory());
   const double read_rays = step.seconds();
 

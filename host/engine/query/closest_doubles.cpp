@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "engine/query/chunk_tracer.h"
@@ -48,14 +49,15 @@ class HitBlock {
     ref_[i] = hit.ref;
   }
 
-  // To the rows of rays from `first` on.
-  void write(const QueryContext& context, const RayArrays& rays, const HitsOut& out,
-             std::size_t first) const {
+  // To the rows of rays from `first` on; no more is put into it then.
+  void write(const QueryContext& context, const RayArrays& rays, const HitsOut& out, std::size_t first) {
     fill(out.t, first, n_, [&](std::size_t i) { return t_[i]; });
+    if (context.table.has_instances() || !out.geometry.empty() || !out.primitive.empty())
+      write_places(context, out, first);
+    else
+      fill(out.instance, first, n_, [](std::size_t) { return kNoInstance; });
     fill(out.u, first, n_, [&](std::size_t i) { return u_[i]; });
     fill(out.v, first, n_, [&](std::size_t i) { return v_[i]; });
-    fill(out.instance, first, n_, [&](std::size_t) { return kNoInstance; });
-    if (!out.geometry.empty() || !out.primitive.empty()) write_places(context, out, first);
     fill_vectors(out.normal, first, n_, [&](std::size_t i) {
       return is_hit(i) ? normal_of(context.scene().doubles->at(ref_[i] & KDRAY_REF_INDEX_MASK)) : dvec3(0);
     });
@@ -67,7 +69,7 @@ class HitBlock {
  private:
   bool is_hit(std::size_t i) const { return t_[i] != HUGE_VAL; }
 
-  void write_places(const QueryContext& context, const HitsOut& out, std::size_t first) const {
+  void write_places(const QueryContext& context, const HitsOut& out, std::size_t first) {
     const prepare::Prepared& scene = context.scene();
     // An index is a number already where the scene has none of its own.
     const bool has_numbers = (scene.features & KDRAY_FEATURE_NUMBERS) != 0;
@@ -78,8 +80,11 @@ class HitBlock {
         places[i] =
             context.table.of(has_numbers ? number_of(scene.flat, ref_[i]) : ref_[i] & KDRAY_REF_INDEX_MASK);
     }
+    for (std::size_t i = 0; i < n_; ++i)
+      if (places[i].is_mirrored) std::swap(u_[i], v_[i]);
     fill(out.geometry, first, n_, [&](std::size_t i) { return places[i].geometry; });
     fill(out.primitive, first, n_, [&](std::size_t i) { return places[i].primitive; });
+    fill(out.instance, first, n_, [&](std::size_t i) { return places[i].instance; });
   }
 
   std::size_t n_;

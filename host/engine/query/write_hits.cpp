@@ -168,14 +168,6 @@ std::size_t HitWriter::write_dense(const Some& some) const {
   return i;
 }
 
-void HitWriter::write_instances(const Some& some, std::size_t from) const {
-  fill(out_.instance, some, from, [&](std::size_t i, const QueryHit& hit) {
-    const std::uint32_t index = missed(hit) ? kNoInstance : some.instance(i);
-    if (index == kNoInstance) return std::array{kNoInstance};
-    return std::array{context_->table.of_instance(context_->scene().flat.instances[index].number).instance};
-  });
-}
-
 template <class Column, class ValueOf>
 void HitWriter::fill(const Column& column, const Some& some, std::size_t from,
                      const ValueOf& value_of) const {
@@ -190,18 +182,18 @@ void HitWriter::fill(const Column& column, const Some& some, std::size_t from,
 void HitWriter::write_columns(const Some& some, std::size_t from) const {
   const auto place_of = [&](std::size_t i, const QueryHit& hit) {
     if (missed(hit)) return GeometryTable::Place{kNoGeometry, kNoPrimitive};
-    const auto number = static_cast<std::uint32_t>(hit.primitive);
     const std::uint32_t index = some.instance(i);
-    if (index == kNoInstance) return context_->table.of(number);
-    const std::uint32_t place = context_->scene().flat.instances[index].number;
-    return GeometryTable::Place{context_->table.of_instance(place).geometry, number};
+    return context_->table.of(
+        static_cast<std::uint32_t>(hit.primitive),
+        index == kNoInstance ? kNoInstance : context_->scene().flat.instances[index].number);
   };
   fill(out_.t, some, from, [&](std::size_t i, const auto& hit) { return std::array{some.t_of(i, hit)}; });
   fill(out_.geometry, some, from,
        [&](std::size_t i, const auto& hit) { return std::array{place_of(i, hit).geometry}; });
   fill(out_.primitive, some, from,
        [&](std::size_t i, const auto& hit) { return std::array{place_of(i, hit).primitive}; });
-  write_instances(some, from);
+  fill(out_.instance, some, from,
+       [&](std::size_t i, const auto& hit) { return std::array{place_of(i, hit).instance}; });
   fill(out_.u, some, from, [](std::size_t, const auto& hit) { return std::array{hit.u}; });
   fill(out_.v, some, from, [](std::size_t, const auto& hit) { return std::array{hit.v}; });
   fill(out_.point, some, 0,
