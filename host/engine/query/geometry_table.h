@@ -41,6 +41,7 @@ class GeometryTable {
   std::uint32_t mask_of_instance(std::uint32_t instance) const { return holder(instances_, instance).mask; }
   // The geometry that all numbers are of; none: there are several, or none at all, or instances.
   std::optional<GeometryId> only() const;
+  std::uint32_t size() const { return next_; }  // numbers in all, but for copies
 
   // Of each number; empty where every geometry has every bit. Where there are instances: the place in the
   // list where those of the numbers begin, those of the instances, and those of the numbers.
