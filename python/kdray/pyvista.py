@@ -109,7 +109,7 @@ def _inside(
         return np.full(len(points), inside_out)
     scene = Scene(geometry="auto")
     scene.add_mesh(np.asarray(surface.points), triangles)
-    if not with_surface:
-        return np.asarray(scene.contains(points) != inside_out)
-    distance = scene.signed_distance(points)
-    return np.asarray(distance >= 0 if inside_out else distance <= 0)
+    selected = scene.contains(points) != inside_out
+    if with_surface:
+        selected |= scene.closest_point(points, radius=0.0, fields=("distance",)).distance == 0
+    return np.asarray(selected)
