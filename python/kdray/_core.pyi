@@ -160,7 +160,7 @@ class Scene:
         primitive: NDArray[Any] | None,
         u: NDArray[Any] | None,
         v: NDArray[Any] | None,
-        instance: NDArray[Any] | None,
+        instance: NDArray[Any] | None = None,
     ) -> int: ...
     def inside(self, arg0: NDArray[Any] | None, arg1: bool, arg2: NDArray[Any] | None, /) -> int: ...
     def signed_distance(
