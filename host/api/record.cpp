@@ -1,7 +1,7 @@
 #include "api/record.h"
 
 #include "accel/flatten/features.h"
-#include "accel/prepare/quality.h"
+#include "accel/prepare/prepared.h"
 #include "api/names.h"
 #include "api/precision.h"
 #include "engine/wavefront/programs.h"
