@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string>
 
-#include "engine/odprt/locate.h"
-#include "engine/odprt/replicate.h"
+#include "engine/odprt/assign.h"
+#include "engine/odprt/subtrees.h"
 #include "engine/pdprt/render.h"
 #include "engine/wavefront/channels.h"
 #include "io/image/color.h"

@@ -13,7 +13,7 @@
 #include "base/hash.h"
 #include "checkpoint_fingerprint.h"
 #include "device/opencl/program.h"
-#include "engine/pdprt/tile_size.h"
+#include "engine/pdprt/tiles.h"
 
 namespace kdray::api {
 

@@ -9,7 +9,7 @@
 
 #include "base/timeline.h"
 #include "engine/checkpoint/frame_checkpoint.h"
-#include "engine/frame/executor.h"
+#include "engine/frame/driver.h"
 #include "engine/frame/result.h"
 #include "kdray/kdray.h"
 #include "kdray/statistics.h"

@@ -8,7 +8,7 @@
 #include "accel/prepare/prepared.h"
 #include "api/job.h"
 #include "api/state.h"
-#include "engine/adaptive/report.h"
+#include "engine/adaptive/plan.h"
 #include "engine/odprt/render.h"
 #include "engine/pdprt/render.h"
 #include "kdray/statistics.h"
