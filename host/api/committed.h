@@ -10,7 +10,7 @@
 #include <span>
 
 #include "engine/device_scene/device_scene.h"
-#include "engine/query/query_context.h"
+#include "engine/query/queries.h"
 #include "kdray/kdray.h"
 
 namespace kdray::api {

@@ -9,7 +9,7 @@
 
 #include "arrays.h"
 #include "interrupt.h"
-#include "io/image/css_color.h"
+#include "io/image/color.h"
 #include "parts.h"
 
 namespace kdray::python {

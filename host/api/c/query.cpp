@@ -2,8 +2,6 @@
 #include <cmath>
 
 #include "api/c/boundary.h"
-#include "api/c/handles.h"
-#include "api/c/values.h"
 
 namespace kdray::capi {
 

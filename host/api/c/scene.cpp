@@ -4,8 +4,6 @@
 #include <utility>
 
 #include "api/c/boundary.h"
-#include "api/c/handles.h"
-#include "api/c/values.h"
 
 namespace kdray::capi {
 

@@ -9,12 +9,12 @@
 #include <limits>
 #include <string_view>
 
-#include "accel/prepare/quality.h"
+#include "accel/prepare/prepared.h"
 #include "apps/cli/help.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "device/tuning/database.h"
-#include "io/image/css_color.h"
+#include "io/image/color.h"
 #include "kdray/kdray.h"
 
 namespace kdray::cli {

@@ -13,7 +13,6 @@
 #include "apps/cli/options.h"
 #include "apps/cli/output.h"
 #include "apps/cli/question.h"
-#include "apps/cli/requested_rows.h"
 #include "apps/cli/run_files.h"
 #include "apps/cli/scene_input.h"
 #include "apps/cli/stats.h"

@@ -11,7 +11,7 @@
 #include "engine/pdprt/tile_client.h"
 #include "engine/pdprt/tile_server.h"
 #include "engine/pdprt/worker_pool.h"
-#include "engine/wavefront/curve.h"
+#include "engine/wavefront/tile_order.h"
 
 namespace kdray::pdprt {
 

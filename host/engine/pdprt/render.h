@@ -15,10 +15,10 @@
 #include <vector>
 
 #include "cluster/transport/ranks.h"
-#include "engine/frame/executor.h"
+#include "engine/frame/driver.h"
 #include "engine/frame/result.h"
 #include "engine/pdprt/tile_hierarchy.h"
-#include "engine/pdprt/tile_size.h"
+#include "engine/pdprt/tiles.h"
 #include "engine/wavefront/wavefront.h"
 
 namespace kdray::pdprt {

@@ -7,7 +7,6 @@
 
 #include "accel/kdtree/build.h"
 #include "accel/kdtree/clip.h"
-#include "accel/kdtree/exact/split.h"
 #include "accel/kdtree/fragment.h"
 
 namespace kdray::kdtree {

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 
@@ -38,5 +39,12 @@ class KeptBuffers {
   std::multimap<std::size_t, cl::Buffer> by_size_;
   std::size_t bytes_ = 0;
 };
+
+// Buffers for a device that works in the host's memory (CL_DEVICE_HOST_UNIFIED_MEMORY): a buffer uses
+// kdray's memory in place, and keeps it as long as the buffer lives. Errors: cl::Error and std::bad_alloc.
+//
+// Returns a buffer over `bytes` > 0 at `memory`, which `owner` keeps alive.
+cl::Buffer buffer_over(const cl::Context& context, cl_mem_flags flags, const void* memory, std::size_t bytes,
+                       std::shared_ptr<void> owner);
 
 }  // namespace kdray::device

@@ -1,4 +1,4 @@
-#include "engine/odprt/assign_balanced.h"
+#include "engine/odprt/assign.h"
 
 #include <algorithm>
 #include <numeric>
@@ -125,6 +125,22 @@ std::vector<std::uint32_t> assign_balanced(std::span<const double> costs,
     best = std::move(parts);
   }
   return best;
+}
+
+std::vector<bool> replicate(std::span<const double> visits, std::span<const std::uint64_t> bytes,
+                            std::uint64_t most_bytes) {
+  std::vector<std::size_t> order(visits.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return visits[a] * static_cast<double>(bytes[b]) > visits[b] * static_cast<double>(bytes[a]);
+  });
+  std::vector<bool> chosen(visits.size());
+  for (const std::size_t i : order) {
+    if (bytes[i] > most_bytes || visits[i] <= 0) continue;
+    most_bytes -= bytes[i];
+    chosen[i] = true;
+  }
+  return chosen;
 }
 
 }  // namespace kdray::odprt
