@@ -17,7 +17,10 @@
 
 namespace kdray::transport {
 
-// Tags of one protocol.
+// Tags of one protocol. Its messages are defined for ranks in ranks.cpp, cores launcher.cpp, scenes
+// apps/cli/render_frame.cpp, frames api/frame_identity.cpp, tiles pdprt/rank_messages.h, shares together.cpp,
+// and in engine/odprt for lists in rank_lists.h, divisions rank_lists.cpp, joining rank_table.cpp, rays
+// rank_exchange.cpp.
 struct Tags {
   Tag first, last;
   bool hold(Tag tag) const { return first <= tag && tag <= last; }

@@ -1,6 +1,6 @@
 // What    A scheme of parallel ray tracing as the frame's driver (driver.h) sees it: PDPRT and ODPRT render
 //         lists of entries, and hand their sums to a sink.
-// Errors  Those of the scheme. What becomes of a queue that fails is the scheme's affair as well.
+// Errors  Those of the scheme. Each scheme also decides what becomes of a failed queue.
 // Ranks   Rank 0's driver begins the lists; the other ranks follow.
 #pragma once
 

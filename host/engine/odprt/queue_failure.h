@@ -1,5 +1,6 @@
 // What    A queue's failure that the other queues may stand in for, on its way from where it is noticed to
-//         where the scene is divided anew without the queue (render.cpp).
+//         where the scene is divided anew without the queue (render.cpp). In PDPRT pdprt/worker_pool.h does
+//         this.
 // Errors  What no other queue may take over (device/opencl/opencl_error.h) is thrown on as it is.
 #pragma once
 
