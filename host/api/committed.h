@@ -1,5 +1,5 @@
 // What    A scene as it was committed: its tree, what its numbers mean, and the devices that answer.
-// Shape   It never changes. Who asks holds on to it, so that it lives until the last answer.
+// Shape   Never changes. Each call holds a reference, so it lives until the last answer.
 #pragma once
 
 #include <cstdint>

@@ -49,7 +49,7 @@ struct TraceRequest {
 };
 TraceRequest request_of(const QuestionArgs& args);
 
-// By the ending of the file's name; to stdout ("-") an .npy where it holds the answers.
+// By the ending of the file's name; for stdout ("-") .npy, or .npz where .npy can't hold the answers.
 array::TableFormat format_of(const std::string& output, Question question);
 
 // Throws for a walk, or a precision of kernels or geometry, in which there is no answer to that question.

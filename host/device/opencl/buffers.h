@@ -1,7 +1,7 @@
 // What    Buffers that a frame leaves to the next one of its size: making them, and first touching their
 //         pages, takes up to a millisecond, which is a third of a small frame.
-// Shape   One store for each Context and its copies. What is taken belongs to the taker until it is left
-//         again; its contents are anybody's.
+// Shape   One store for each Context and its copies. A buffer belongs to its taker until it is left again;
+//         its contents are undefined.
 // Threads Any.
 #pragma once
 
@@ -27,7 +27,7 @@ class KeptBuffers {
   // all others go: frames have another size from now on.
   std::optional<cl::Buffer> take(std::size_t bytes);
 
-  // No command may use the buffer any more. None is left where it is no buffer, or too large.
+  // No command may use the buffer any more. A null one, or one too large, isn't kept.
   void leave(const cl::Buffer& buffer) noexcept;
 
   void clear();

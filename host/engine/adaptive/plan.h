@@ -1,5 +1,5 @@
-// What    How far pixels are to be refined for an error: all until another sample of any of them is worth as
-//         little.
+// What    How far to refine pixels for a target error: until another sample gains equally little in any of
+//         them.
 // Shape   A pixel of n samples with the squared error v has the price v/n, by which pixels are counted. Each
 //         is refined level by level until its price is not above a limit; the limit is the highest for which
 //         the errors add up to what is wanted.

@@ -1,5 +1,4 @@
-// What    Who works at which of a number of things in a folder that several processes share: each is
-//         nobody's, somebody's, or done.
+// What    Records in a shared folder which process works on which things: each is free, leased, or done.
 // Shape   Files: NAME-I.G is the G-th lease of thing I, with its owner's name in it; NAME-I.done says that it
 //         is done. A lease whose owner is gone (Heartbeat) runs out: the next one is G + 1. Files are made
 //         once and by one process (create_once), never changed or removed, so that there is no moment in
@@ -93,10 +92,10 @@ class Leases {
   // Whether someone had it before.
   bool was_held(std::size_t i) const { return things_[i].next > (things_[i].mine ? 1u : 0u); }
 
-  // False: another was faster.
+  // Takes a lease; false: another was faster.
   bool claim(std::size_t i);
 
-  // It is done; false: another had said so already.
+  // Marks it done; false: another had.
   bool finish(std::size_t i);
 
  private:

@@ -62,8 +62,8 @@ inline Entries without(Entries all, Entries left) {
 using Sink = std::function<void(const wavefront::PlacedFilms&, std::span<const layout::u32> entries)>;
 
 // A scheme of parallel ray tracing as the frame's driver sees it: PDPRT and ODPRT render lists
-// of entries, and hand their sums to a sink. Errors: Those of the scheme. What becomes of a queue that
-// fails is the scheme's affair as well. Ranks: Rank 0's driver begins the lists; the other ranks follow.
+// of entries, and hand their sums to a sink. Errors: Those of the scheme, which also decides what becomes
+// of a failed queue. Ranks: Rank 0's driver begins the lists; the other ranks follow.
 class Executor {
  public:
   virtual ~Executor() = default;

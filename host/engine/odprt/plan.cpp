@@ -20,7 +20,7 @@ constexpr std::uint32_t kPoolRays = 1u << 16, kOutboxRays = 1u << 13;
 constexpr std::uint32_t kMostPlaces = 4;
 // Shadow rays that may leave where there is nowhere to go.
 constexpr std::uint32_t kAnyNumber = 1u << 30;
-// Where every ray has a work-item, all lights' shadow rays of so many rays have room, as far as that is not
+// Where every ray has a work-item, all lights' shadow rays of so many rays have space, as far as that is not
 // too much: a wave is many launches where there are many lights.
 constexpr std::uint64_t kLitRays = 256, kMostLit = 1u << 22;
 // Where the host sorts: rays that may wait in its memory, in a queue's pool, and in the outbox.

@@ -139,7 +139,7 @@ frame::Entries Executor::serve(frame::List list, const frame::Sink& sink, const 
   return left;
 }
 
-// Rank 0's devices decide how a frame is cut into bands; this rank has room for the same.
+// Rank 0's devices decide how a frame is cut into bands; this rank has space for the same.
 void Executor::check_entries(const Begin& list) const {
   const bool known = std::ranges::any_of(
       bands_, [&](const wavefront::Band& band) { return band.first_pixel == list.first_pixel; });

@@ -102,7 +102,7 @@ class Answer {
   static constexpr std::uint64_t kBytesPerHit =
       sizeof(double) + 2 * sizeof(float) + 3 * sizeof(std::uint32_t);
 
-  // Makes room for more rays with their hits: where these begin.
+  // Makes space for more rays with their hits: where these begin.
   template <class CountOf>
   std::size_t begin(const auto& more, const CountOf& count_of) {
     const std::size_t before = hits_.t.size();

@@ -115,7 +115,7 @@ namespace {
 using layout::ClosestHit;
 using layout::QueryPoint;
 
-// A launch has room for so many points at least.
+// A launch has space for so many points at least.
 constexpr std::size_t kLeastCapacity = 1024;
 // Fewer are asked as they come: sorting them would take longer than they do.
 constexpr std::size_t kFewPoints = 64;

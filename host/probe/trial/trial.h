@@ -87,8 +87,8 @@ std::optional<TrialRequest> request_of(std::span<const char* const> arguments);
 // Returns what is wrong with the picture of the device of this number; empty: nothing.
 using TestPicture = std::function<std::string(int number)>;
 
-// Does the trial and ends the process, without a clean-up: a driver that would hang there has been tried
-// already.
+// Does the trial and ends the process, without a clean-up: the outcome is reported, and a driver might hang
+// in it.
 [[noreturn]] void try_it(const TrialRequest& request, const TestPicture& test_picture);
 
 }  // namespace kdray::trial
