@@ -16,8 +16,8 @@
 namespace kdray::odprt {
 
 // A queue's failure that the other queues may stand in for, on its way from where it is noticed to where
-// the scene is divided anew without the queue (render.cpp); in PDPRT pdprt/worker_pool.h does this. Errors: What
-// no other queue may take over (device/opencl/opencl_error.h) is thrown on as it is.
+// the scene is divided anew without the queue (render.cpp); in PDPRT pdprt/worker_pool.h does this. What no
+// other queue may take over (device/opencl/opencl_error.h) is thrown on as it is.
 struct QueueFailure {
   std::size_t queue = 0;  // its place in the request
   Error error;
