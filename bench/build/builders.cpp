@@ -1,7 +1,6 @@
 #include "bench/build/builders.h"
 
 #include "accel/prepare/prepared.h"
-#include "accel/prepare/quality.h"
 
 namespace kdray::bench {
 

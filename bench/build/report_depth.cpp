@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "accel/prepare/quality.h"
+#include "accel/prepare/prepared.h"
 #include "bench/build/report.h"
 #include "bench/measure/short_name.h"
 

@@ -14,7 +14,6 @@
 #include "bench/cli/commands.h"
 #include "bench/modes/bench.h"
 #include "bench/ranks/bench.h"
-#include "cluster/transport/launcher.h"
 #include "cluster/transport/mpi.h"
 #include "kdray/error.h"
 

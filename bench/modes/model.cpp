@@ -1,9 +1,10 @@
 #include "bench/modes/model.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "api/statistics_json.h"
@@ -13,8 +14,8 @@
 #include "bench/modes/paths.h"
 #include "bench/modes/tiles.h"
 #include "bench/modes/traffic.h"
+#include "engine/odprt/assign.h"
 #include "engine/odprt/division.h"
-#include "engine/odprt/replicate.h"
 
 namespace kdray::bench {
 

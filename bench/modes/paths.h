@@ -1,8 +1,8 @@
 // What    Whose subtrees each ray passes on its way to its end, in order, and what it costs there.
 // Shape   A walk of the whole wide tree from near to far, as a device does it; since it is known where a ray
 //         ends, no primitive is tested. Subtrees have owners, their roots and the opened nodes above belong
-//         to the directory, as host/engine/odprt/parts.h makes it: between two owners there may be a stay in
-//         it.
+//         to the directory, as host/engine/odprt/division.h makes it: between two owners there may be a stay
+//         in it.
 // Units   A visit of a node counts 1, a test of a block 2 (TreeOptions' own weights).
 #pragma once
 

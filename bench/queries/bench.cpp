@@ -155,7 +155,7 @@ class QueriesScene {
     run_.device = device.at("name");
     run_.vectors = device.value("vectors", "");
     sides_ = {kdray_side(scene_, mesh_, device_)};
-    if (options_.geometry == Precision::float64) sides_.push_back(double_side(mesh_, device_));
+    if (options_.geometry == VertexPrecision::float64) sides_.push_back(double_side(mesh_, device_));
     n_own_ = sides_.size();
     if (options_.embree)
       for (Side& side : embree_sides(mesh_, run_.cores)) sides_.push_back(std::move(side));

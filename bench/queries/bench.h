@@ -27,7 +27,7 @@ struct QueriesOptions {
   int rays = 1'000'000;                                    // of a set
   int repeat = 5;                                          // rounds
   bool embree = true;                                      // beside kdray, where there is one
-  Precision geometry = Precision::float32;                 // float64: kdray's doubles beside its floats
+  VertexPrecision geometry = VertexPrecision::float32;     // float64: kdray's doubles beside its floats
   std::string device = "auto";
 };
 

@@ -92,7 +92,7 @@ class KdrayAsker : public Asker {
 
 }  // namespace
 
-Scene kdray_scene(const MeshArrays& mesh, const DeviceOptions& device, Precision geometry) {
+Scene kdray_scene(const MeshArrays& mesh, const DeviceOptions& device, VertexPrecision geometry) {
   Scene scene;
   scene.add_mesh({mesh.vertices, mesh.triangles});
   CommitOptions options;
@@ -114,7 +114,7 @@ Side kdray_side(const std::shared_ptr<const Scene>& scene, const MeshArrays& mes
 
 Side double_side(const MeshArrays& mesh, const DeviceOptions& device) {
   const auto make = [&mesh, device] {
-    return std::make_shared<const Scene>(kdray_scene(mesh, device, Precision::float64));
+    return std::make_shared<const Scene>(kdray_scene(mesh, device, VertexPrecision::float64));
   };
   return {"double", {{"", std::make_shared<KdrayAsker>(make(), true)}}, [make](const QuerySet& set) {
             Answers answer(Question::closest, set.size());

@@ -11,7 +11,7 @@ namespace kdray::bench {
 
 // The mesh as a scene that has been committed.
 Scene kdray_scene(const MeshArrays& mesh, const DeviceOptions& device,
-                  Precision geometry = Precision::float32);
+                  VertexPrecision geometry = VertexPrecision::float32);
 
 // The mesh has to outlive it.
 Side kdray_side(const std::shared_ptr<const Scene>& scene, const MeshArrays& mesh,

@@ -10,7 +10,6 @@
 #include <thread>
 #include <utility>
 
-#include "cluster/transport/in_process.h"
 #include "cluster/transport/message_bytes.h"
 #include "cluster/transport/simulated.h"
 #include "kdray/error.h"

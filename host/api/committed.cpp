@@ -10,8 +10,17 @@ namespace kdray::api {
 
 namespace {
 
+scene::Copies copies_of(const prepare::Prepared& scene) {
+  return scene.doubles ? scene.doubles->copies : scene::Copies();
+}
+
 query::GeometryTable table_of_one(const prepare::Prepared& scene) {
   query::GeometryTable table;
+  if (const scene::Copies copies = copies_of(scene); copies.size() > 0) {
+    table.add(0, copies.first.front(), 0xffffffffu);
+    table.add_instances(0, static_cast<std::uint32_t>(copies.size()), 0xffffffffu);
+    return table;
+  }
   table.add(0, static_cast<std::uint32_t>(scene.counts.primitives), 0xffffffffu);
   if (const std::size_t n = scene.counts.instances; n > 0)
     table.add_instances(0, scene.flat.instances[n - 1].number + 1, 0xffffffffu);
@@ -37,6 +46,7 @@ Committed::Committed(const PreparedScene& scene, const DeviceOptions& device, co
 }
 
 void Committed::open_places(const RayWalk& walk) {
+  table_.set_copies(copies_of(scene_.prepared()));
   const Traversal traversal = traversal_of_rays(walk.precision, walk.traversal, *devices_);
   std::vector<std::uint32_t> instances;
   for (const layout::Instance& instance : scene_.prepared().flat.instances)

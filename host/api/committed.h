@@ -1,5 +1,5 @@
 // What    A scene as it was committed: its tree, what its numbers mean, and the devices that answer.
-// Shape   It never changes. Who asks holds on to it, so that it lives until the last answer.
+// Shape   Never changes. Each call holds a reference, so it lives until the last answer.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 #include <span>
 
 #include "engine/device_scene/device_scene.h"
-#include "engine/query/query_context.h"
+#include "engine/query/queries.h"
 #include "kdray/kdray.h"
 
 namespace kdray::api {

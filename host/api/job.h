@@ -9,7 +9,7 @@
 
 #include "base/timeline.h"
 #include "engine/checkpoint/frame_checkpoint.h"
-#include "engine/frame/executor.h"
+#include "engine/frame/driver.h"
 #include "engine/frame/result.h"
 #include "kdray/kdray.h"
 #include "kdray/statistics.h"
@@ -23,7 +23,7 @@ struct Job {
   layout::Features features;
   timeline::Timeline* timeline;                                  // null: not wanted
   std::shared_ptr<checkpoint::FrameCheckpoint> checkpoint = {};  // null: there is none
-  // With ranks: the frame's mark, and what a queue's film takes at most (frame_identity.h).
+  // With ranks: the frame's mark, and what a queue's film takes at most (agree).
   Hash shared_frame = {};
   std::size_t film_of_ranks = 0;
 };
@@ -56,5 +56,20 @@ frame::Request request_of(State& state, const Job& job);
 inline double mrays_per_s(std::uint64_t rays, double seconds) {
   return seconds > 0 ? static_cast<double>(rays) / seconds * 1e-6 : 0.0;
 }
+
+// What tells a frame from others: for the checkpoint that is opened for it, and for ranks that render it
+// together and agree on it beforehand. A checkpoint's header says all that matters for the bits of a
+// picture. Rank 0 sends it, and decides the mode and how the frame is cut into tiles and bands. Errors:
+// kdray::Error of a rank that has another scene, other settings or another build than rank 0, or less
+// memory for its film.
+
+// Puts the tiles into the job's options. Returns rank 0's mode.
+Mode agree(State& state, Job& job, Mode mode);
+
+// What tells the frame from others.
+checkpoint::Identity identity_of(State& state, const Job& job);
+
+// For a job whose options ask for one. Puts the checkpoint's tiles into the job's options.
+void open_checkpoint(State& state, Job& job);
 
 }  // namespace kdray::api

@@ -13,7 +13,6 @@
 #include "device/opencl/context.h"
 #include "device/opencl/verdicts.h"
 #include "device/tuning/database.h"
-#include "engine/device_scene/device.h"
 #include "engine/device_scene/device_scene.h"
 #include "kdray/kdray.h"
 #include "layout/features.h"

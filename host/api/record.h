@@ -8,9 +8,10 @@
 #include "accel/prepare/prepared.h"
 #include "api/job.h"
 #include "api/state.h"
-#include "engine/adaptive/report.h"
+#include "engine/adaptive/plan.h"
 #include "engine/odprt/render.h"
 #include "engine/pdprt/render.h"
+#include "kdray/kdray.h"
 #include "kdray/statistics.h"
 #include "layout/features.h"
 
@@ -37,5 +38,11 @@ struct Query {
   Precision precision = Precision::float32;
 };
 void record_query(Statistics& statistics, const engine::DeviceScene& devices, const Query& query);
+
+// The names of choices, as the command line takes them and the statistics give them.
+const char* name_of(Traversal traversal);
+const char* name_of(Precision precision);
+const char* name_of(Division division);
+const char* name_of(Balance balance);
 
 }  // namespace kdray::api

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "api/names.h"
 #include "api/record.h"
 #include "layout/rays.layout.h"
 

@@ -3,11 +3,8 @@
 #include <numeric>
 #include <span>
 
-#include "api/channels.h"
 #include "api/choose_mode.h"
-#include "api/draw_odprt.h"
-#include "api/draw_pdprt.h"
-#include "api/frame_identity.h"
+#include "api/draw.h"
 #include "api/hooks.h"
 #include "api/job.h"
 #include "api/open_devices.h"

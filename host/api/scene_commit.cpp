@@ -168,6 +168,7 @@ CommitReport Scene::Impl::commit(const CommitOptions& options) {
   CommitReport report;
   std::optional<PreparedScene> ready = refit(options, report);
   if (!ready) ready = build(options);
+  report.geometry = ready->prepared().doubles ? VertexPrecision::float64 : VertexPrecision::float32;
   const std::shared_ptr<api::Committed> made(new api::Committed(*ready, table(), options.device),
                                              [](api::Committed* made) {
                                                if (!device::is_forked_off())

@@ -9,7 +9,7 @@
 
 #include "api/job.h"
 #include "engine/device_scene/device_scene.h"
-#include "engine/pdprt/tile_size.h"
+#include "engine/pdprt/tiles.h"
 #include "engine/wavefront/wavefront.h"
 
 namespace kdray::api {

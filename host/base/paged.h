@@ -1,6 +1,6 @@
-// What    Memory for what is large and looked at here and there, as the texels of pictures are: plain memory
-//         as far as a budget of the process goes, and beyond it pages of a nameless file, which the system
-//         writes out and reads back as they are needed.
+// What    Memory for large data that is read sparsely, such as texels: plain memory up to a process-wide
+//         budget, then pages of an unnamed file, which the system writes out and reads back as they are
+//         needed.
 // Shape   Plain memory has three quarters of the budget. When pages of files have more than the last quarter
 //         in memory they are let go, all at once: those that are still looked at come back from the system's
 //         file cache, which it frees as it likes. A thread watches this while there are such pages. Files lie

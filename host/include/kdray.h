@@ -257,7 +257,9 @@ typedef struct kdray_commit_options {
   /* Where only vertices have moved, the tree is fitted to them unless what a ray is expected to cost has
    * grown by more than this since it was built; 0: 1.5; below 0: it is always built. */
   double refit_growth;
-  int32_t geometry; /* 0 float; 1 double: queries answer for meshes' vertices as they were given, exactly */
+  /* 0 float; 1 double: queries answer for meshes' vertices as they were given, exactly; 2: double where the
+   * vertices of a scene of meshes without instances are no floats. */
+  int32_t geometry;
 } kdray_commit_options;
 KDRAY_API kdray_status kdray_commit(kdray_scene* scene, const kdray_commit_options* options);
 
@@ -338,6 +340,7 @@ typedef struct kdray_closest_points_out {
   kdray_out point;
   kdray_out geometry, primitive;
   kdray_out u, v;
+  kdray_out instance; /* as kdray_hits has it */
 } kdray_closest_points_out;
 KDRAY_API kdray_status kdray_closest_points(const kdray_scene* scene, kdray_in points,
                                             const kdray_closest_points_out* out,

@@ -101,7 +101,7 @@ class Scene:
         arg10: Sequence[float],
         /,
     ) -> int: ...
-    def commit(self, quality: str, device: str, compute_units: int, binary_form: bool, in_double: bool) -> None: ...
+    def commit(self, quality: str, device: str, compute_units: int, binary_form: bool, geometry: str) -> bool: ...
     def closest(
         self,
         origins: NDArray[Any] | None,
@@ -160,6 +160,7 @@ class Scene:
         primitive: NDArray[Any] | None,
         u: NDArray[Any] | None,
         v: NDArray[Any] | None,
+        instance: NDArray[Any] | None = None,
     ) -> int: ...
     def inside(self, arg0: NDArray[Any] | None, arg1: bool, arg2: NDArray[Any] | None, /) -> int: ...
     def signed_distance(

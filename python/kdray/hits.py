@@ -155,8 +155,8 @@ class AllHits:
 class ClosestPoints(_Columns):
     """Of each point what lies nearest to it. All arrays have the shape of the points, without coordinates."""
 
-    __slots__ = ("_distance", "_geometry", "_point", "_primitive", "_u", "_v")
-    _names = ("distance", "point", "geometry", "primitive", "u", "v")
+    __slots__ = ("_distance", "_geometry", "_instance", "_point", "_primitive", "_u", "_v")
+    _names = ("distance", "point", "geometry", "primitive", "u", "v", "instance")
 
     distance = _column("distance", "float32 or float64, as the points; infinity where nothing is in reach.")
     point = _column("point", "(..., 3): the nearest point of a surface.")
@@ -164,6 +164,7 @@ class ClosestPoints(_Columns):
     primitive = _column("primitive", "int32: the number within the geometry, or -1.")
     u = _column("u", "As in `Hits`.")
     v = _column("v", "As in `Hits`.")
+    instance = _column("instance", "int32: as in `Hits`.")
 
     def __init__(self, columns: dict[str, Array]) -> None:
         for name in self._names:

@@ -94,7 +94,8 @@ class Scene:
 
     With ``geometry="double"`` a scene of meshes alone answers for its vertices as they were given: all questions are
     decided as exact arithmetic does, and t of float64 rays is the nearest float64 but for its last place. That takes up
-    to a few times as long. Pictures are of the vertices rounded to floats, as all is otherwise.
+    to a few times as long, and instances take the memory of copies. Pictures are of the vertices rounded to floats, as
+    all is otherwise.
 
     A scene can be copied and pickled; it then holds its arrays, or the name of the file that it was read from.
 
@@ -107,13 +108,13 @@ class Scene:
 
         `compute_units`: only so many of the device's cores; 0 is all. Raises NoDeviceError where there is no such
         device. (Where there is none at all, the first commit does.) `geometry`: what vertices are to questions,
-        "float" or "double".
+        "float", "double", or "auto": double in a scene of meshes without instances whose vertices are no floats.
         """
         self._start(_core.Scene(), _device(device), compute_units, geometry)
 
     def _start(self, core: Any, device: str, compute_units: int, geometry: str) -> None:
-        if geometry not in ("float", "double"):
-            raise errors.UsageError(f'geometry is "float" or "double", not {geometry!r}')
+        if geometry not in ("float", "double", "auto"):
+            raise errors.UsageError(f'geometry is "float", "double" or "auto", not {geometry!r}')
         self._core = core
         self._device, self._compute_units, self._geometry = device, compute_units, geometry
         self._file: tuple[str, float | None, float | None, str, str] | None = None
@@ -126,6 +127,7 @@ class Scene:
         self._colors: dict[str, Color] = {}  # "background", "ambient"
         self._sky: tuple[Any, ...] | None = None  # "gradient" or "environment", and what it was set by
         self._changed, self._committed, self._binary_form, self._quality = True, False, False, "balanced"
+        self._in_doubles = False
         self._lock = threading.RLock()
 
     # ---- What it is made of
@@ -397,6 +399,12 @@ class Scene:
         return None if ends is None else np.array(ends)
 
     @property
+    def geometry(self) -> str:
+        """What vertices are to questions: "float" or "double". Commits changes."""
+        self._ready()
+        return "double" if self._in_doubles else "float"
+
+    @property
     def warnings(self) -> list[str]:
         """What the reader of its file left out or changed, a line each."""
         return list(self._core.warnings())
@@ -531,8 +539,8 @@ class Scene:
         _drivers.choose()
         self._changed = False  # by now: what is changed meanwhile is for the next one
         try:
-            self._core.commit(
-                self._quality, self._device, self._compute_units, self._binary_form, self._geometry == "double"
+            self._in_doubles = self._core.commit(
+                self._quality, self._device, self._compute_units, self._binary_form, self._geometry
             )
         except BaseException:
             self._changed = True
@@ -540,7 +548,7 @@ class Scene:
         self._committed = True
 
     def _type_of_weights(self, of_questions: Any) -> Any:
-        return of_questions if self._geometry == "double" else np.float32
+        return np.float32 if self._geometry == "float" else of_questions
 
     def _ready(self) -> Any:
         if self._changed or not self._committed:
@@ -670,12 +678,17 @@ class Scene:
         points: ArrayLike,
         radius: float = math.inf,
         *,
-        fields: Iterable[str] = ClosestPoints._names,
+        fields: Iterable[str] | None = None,
         strict: bool = False,
     ) -> ClosestPoints:
-        """Of each point (..., 3) the nearest point of any surface within `radius`."""
+        """Of each point (..., 3) the nearest point of any surface within `radius`.
+
+        `fields` names the arrays of `ClosestPoints` that are wanted (`instance` only where the scene has instances, if
+        you say nothing).
+        """
         rows, shape = _arrays.vectors(points, "points")
-        wanted = known(fields, ClosestPoints._names)
+        usual = ClosestPoints._names if self._has_instances else ClosestPoints._names[:-1]
+        wanted = known(usual if fields is None else fields, ClosestPoints._names)
         columns: dict[str, Array] = {}
         for name in wanted:
             dtype = type_of(name, rows.dtype, self._type_of_weights(rows.dtype))

@@ -91,15 +91,16 @@ void add_point_queries(SceneClass& scene) {
   scene.def(
       "closest_points",
       [](const Scene& s, const In& points, double radius, bool strict, const Out& distance, const Out& point,
-         const Out& geometry, const Out& primitive, const Out& u, const Out& v) {
+         const Out& geometry, const Out& primitive, const Out& u, const Out& v, const Out& instance) {
         PointOptions options = options_of<PointOptions>(strict);
         options.radius = radius;
         const ClosestPointsOut out{values_out(distance), points_out(point), words_out(geometry),
-                                   words_out(primitive), values_out(u),     values_out(v)};
+                                   words_out(primitive), values_out(u),     values_out(v),
+                                   words_out(instance)};
         return s.closest_points(points_of(points), out, options).invalid;
       },
       Released(), "points"_a, "radius"_a, "strict"_a, "distance"_a.none(), "point"_a.none(),
-      "geometry"_a.none(), "primitive"_a.none(), "u"_a.none(), "v"_a.none());
+      "geometry"_a.none(), "primitive"_a.none(), "u"_a.none(), "v"_a.none(), "instance"_a.none() = nb::none());
   scene.def(
       "inside",
       [](const Scene& s, const In& points, bool strict, const Out& out) {

@@ -9,7 +9,7 @@
 
 #include "arrays.h"
 #include "interrupt.h"
-#include "io/image/css_color.h"
+#include "io/image/color.h"
 #include "parts.h"
 
 namespace kdray::python {
@@ -24,6 +24,13 @@ BuildQuality quality_of(const std::string& name) {
   if (name == "balanced") return BuildQuality::balanced;
   if (name == "best") return BuildQuality::best;
   throw Error(ErrorCode::usage, "quality is \"fast\", \"balanced\" or \"best\", not \"" + name + "\"");
+}
+
+VertexPrecision geometry_of(const std::string& name) {
+  if (name == "float") return VertexPrecision::float32;
+  if (name == "double") return VertexPrecision::float64;
+  if (name == "auto") return VertexPrecision::automatic;
+  throw Error(ErrorCode::usage, "geometry is \"float\", \"double\" or \"auto\", not \"" + name + "\"");
 }
 
 void add_geometries(SceneClass& scene) {
@@ -189,17 +196,17 @@ SceneClass add_scene(nb::module_& module) {
   scene.def(
       "commit",
       [](Scene& s, const std::string& quality, const std::string& device, int compute_units, bool binary_form,
-         bool in_double) {
+         const std::string& geometry) {
         CommitOptions options;
         options.tree.quality = quality_of(quality);
         options.tree.binary_form = binary_form;
-        if (in_double) options.tree.geometry = Precision::float64;
+        options.tree.geometry = geometry_of(geometry);
         options.device.device = device;
         options.device.compute_units = compute_units;
         options.device.programs = default_program_folder();
-        s.commit(options);
+        return s.commit(options).geometry == VertexPrecision::float64;
       },
-      Released(), "quality"_a, "device"_a, "compute_units"_a, "binary_form"_a, "in_double"_a);
+      Released(), "quality"_a, "device"_a, "compute_units"_a, "binary_form"_a, "geometry"_a);
   return scene;
 }
 

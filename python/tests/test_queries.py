@@ -333,14 +333,47 @@ def test_double_geometry_keeps_to_the_rays_type_and_goes_with_copies(speck, tmp_
     assert kdray.load(file, geometry="double").closest_hit(*ray).t == t
 
 
-def test_double_geometry_refuses_what_is_no_mesh(ball_mesh):
-    with pytest.raises(kdray.UsageError, match='geometry is "float" or "double", not'):
+def test_double_geometry_refuses_what_is_no_mesh():
+    with pytest.raises(kdray.UsageError, match='geometry is "float", "double" or "auto", not'):
         kdray.Scene(geometry="float64")
     shapes = kdray.Scene(geometry="double")
     shapes.add_spheres([[0, 0, 0]], 1)
     with pytest.raises(kdray.InputError, match="primitives other than triangles, which a scene of doubles"):
         shapes.any_hit([0, 0, 5], [0, 0, -1])
+
+
+def test_geometry_is_double_by_itself_where_vertices_are_no_floats(ball_mesh):
+    def geometry_of(fill):
+        scene = kdray.Scene(geometry="auto")
+        fill(scene)
+        return scene.geometry
+
+    corners, triangles = ball_mesh[0].astype(np.float32).astype(np.float64), ball_mesh[1]
+    assert geometry_of(lambda scene: scene.add_mesh(np.round(corners * 1024) / 1024, triangles)) == "float"
+    assert geometry_of(lambda scene: scene.add_mesh(np.round(corners * 1024) / 1024 + 4096, triangles)) == "float"
+    assert geometry_of(lambda scene: scene.add_mesh(corners + 1e-12, triangles)) == "double"
+    assert geometry_of(lambda scene: None) == "float"
+
+    def with_a_sphere(scene):
+        scene.add_mesh(corners + 1e-12, triangles)
+        scene.add_spheres([[0, 0, 0]], 1)
+
+    def with_instances(scene):
+        scene.add_instances(scene.add_mesh(corners + 1e-12, triangles, prototype=True), np.eye(4))
+
+    assert geometry_of(with_a_sphere) == geometry_of(with_instances) == "float"
+    assert kdray.Scene().geometry == "float"
+
+
+def test_instances_of_doubles_are_where_their_transforms_bring_them(ball_mesh):
     placed = kdray.Scene(geometry="double")
-    placed.add_instances(placed.add_mesh(*ball_mesh, prototype=True), np.eye(4))
-    with pytest.raises(kdray.InputError, match="instances, which a scene of doubles"):
-        placed.any_hit([0, 0, 5], [0, 0, -1])
+    away = np.eye(4)
+    away[:3, 3] = [1e6, 2e6, 3e6 + 1 / 3]
+    ball = placed.add_instances(placed.add_mesh(*ball_mesh, prototype=True), [np.eye(4), away])
+    there = away[:3, 3]
+    hits = placed.closest_hit([[0, 0, 5], there + [0, 0, 5]], [0, 0, -1])
+    assert (hits.geometry == ball).all() and hits.instance.tolist() == [0, 1]
+    assert abs(hits.t[0] - hits.t[1]) < 1e-9 and hits.primitive[0] == hits.primitive[1]
+    nearest = placed.closest_point(there + [0, 0, 5])
+    assert (nearest.geometry, nearest.instance) == (ball, 1) and abs(nearest.distance - hits.t[1]) < 1e-9
+    assert placed.contains([there, there + [0, 0, 5]]).tolist() == [True, False]

@@ -231,5 +231,30 @@ TEST_P(Layouts, OneRowForAllRaysIsReadAlone) {
   EXPECT_EQ(distance, std::vector<float>(n, 5));
 }
 
+TEST_P(Layouts, WeightsMayBePairs) {
+  const test::Cube cube;
+  CommitOptions commit;
+  commit.device.device = GetParam();
+  Scene scene;
+  scene.add_mesh({cube.vertices, cube.triangles});
+  scene.commit(commit);
+  const std::size_t n = 1003;  // no multiple of four
+  std::vector<std::array<float, 3>> eyes(n), down(n, {0, 0, -1});
+  for (std::size_t i = 0; i < n; ++i)
+    eyes[i] = {static_cast<float>(i % 37) / 16 - 1.1f, static_cast<float>(i % 41) / 20 - 1, 6};
+  const Rays rays{Points(&eyes[0][0], n, sizeof eyes[0]), Points(&down[0][0], n, sizeof down[0])};
+  std::vector<float> u(n), v(n), pairs(2 * n + 1, -7);
+  scene.closest(rays, {.u = u, .v = v});
+  scene.closest(rays, {.u = {pairs.data(), n, 2 * sizeof(float)}, .v = {&pairs[1], n, 2 * sizeof(float)}});
+  std::size_t n_hits = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    ASSERT_EQ(pairs[2 * i], u[i]) << i;
+    ASSERT_EQ(pairs[2 * i + 1], v[i]) << i;
+    n_hits += u[i] > 0 && v[i] > 0;
+  }
+  EXPECT_GT(n_hits, 100u);
+  EXPECT_EQ(pairs[2 * n], -7) << "behind the last row";
+}
+
 }  // namespace
 }  // namespace kdray

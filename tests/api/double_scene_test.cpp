@@ -32,7 +32,7 @@ class DoubleScenes : public test::EachDevice {
   CommitOptions options() const {
     CommitOptions options;
     options.device.device = GetParam();
-    options.tree.geometry = Precision::float64;
+    options.tree.geometry = VertexPrecision::float64;
     return options;
   }
   Scene scene_of(const DoubleMesh& mesh) const {
@@ -365,7 +365,7 @@ TEST_P(DoubleScenes, FloatsOfOneAreTracedAsEver) {
     rays.push_back({{f(o[0]), f(o[1]), f(o[2])}, 0, {f(d[0]), f(d[1]), f(d[2])}, HUGE_VALF});
   }
   CommitOptions in_floats = options();
-  in_floats.tree.geometry = Precision::float32;
+  in_floats.tree.geometry = VertexPrecision::float32;
   Scene floats, doubles = scene_of(mesh);
   floats.add_mesh({mesh.points(), mesh.triangles});
   floats.commit(in_floats);

@@ -11,7 +11,6 @@
 #include "api/hooks.h"
 #include "cluster/partition/ply_files.h"
 #include "cluster/partition/scene_partition.h"
-#include "cluster/transport/in_process.h"
 #include "cluster/transport/simulated.h"
 #include "pictures/render.h"
 #include "pictures/scenes.h"

@@ -1,7 +1,7 @@
 // What    ODPRT's ranks tell each other, as rank 0 and as another rank gets it: the first byte chooses which
 //         message.
 #include "engine/frame/result.h"
-#include "engine/odprt/rank_lists.h"
+#include "engine/odprt/rank_table.h"
 #include "engine/odprt/ray_batch.h"
 #include "fuzz/script.h"
 

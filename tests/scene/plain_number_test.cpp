@@ -1,4 +1,4 @@
-#include "scene/import/plain_number.h"
+#include "scene/import/text_scanner.h"
 
 #include <gtest/gtest.h>
 

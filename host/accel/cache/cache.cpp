@@ -84,7 +84,7 @@ Hash key_of(const std::filesystem::path& file, const Hash& content, const TreeOp
 
 std::optional<prepare::Prepared> find(const CacheOptions& cache, const fs::path& scene,
                                       const TreeOptions& tree, const LoadOptions& load) {
-  if (cache.folder.empty() || tree.geometry == Precision::float64) return std::nullopt;
+  if (cache.folder.empty() || tree.geometry != VertexPrecision::float32) return std::nullopt;
   const std::optional<Hash> content = content_of(scene);
   if (!content) return std::nullopt;
   const Hash key = key_of(scene, *content, tree, load);

@@ -5,7 +5,7 @@
 // Shape   Bottom up, for each subtree and each number of slots that it may fill: it is one child, a wide node
 //         of its own, or its two sides share the slots. A ray visits a node with a chance in proportion to
 //         the surface of its contents. Sums are floats in a fixed order, ties open and go to the smaller
-//         share, so that threads don't show.
+//         share, so that threads can't change the result.
 // Source  Ylitie, Karras, Laine, "Efficient incoherent ray traversal on GPUs through compressed wide BVHs",
 //         HPG 2017, section 3.
 #pragma once

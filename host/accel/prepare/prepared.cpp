@@ -106,21 +106,58 @@ std::size_t Prepared::largest_array() const {
   return largest;
 }
 
+namespace {
+
+bool has_shapes(const scene::Scene& scene) {
+  return scene.primitive_count() != scene.triangles.size();
+}
+
+bool may_be_in_doubles(const scene::Scene& scene) {
+  return !has_shapes(scene) && scene.instances.empty();
+}
+
+Prepared prepare_as(const TreeOptions& options, const scene::Scene& scene, const scene::Geometry& geometry) {
+  const kdtree::BuildConfig config = config_of(options, std::max(geometry.size(), largest_mesh(scene)));
+  return options.memory_bytes > 0
+             ? prepare_within(scene, geometry, config, options.binary_form, options.memory_bytes)
+             : prepare(scene, geometry, config, options.binary_form);
+}
+
+Prepared prepare_copied(const scene::Scene& scene, scene::Copies copies, const TreeOptions& options) {
+  const scene::Geometry geometry = scene::make_geometry_for_doubles(scene);
+  Prepared made = prepare_as(options, scene, geometry);
+  auto doubles = std::make_shared<scene::DoubleTriangles>(scene::make_double_triangles(scene, geometry));
+  doubles->copies = std::move(copies);
+  made.doubles = std::move(doubles);
+  return made;
+}
+
+// The scene's instances become copies: a vertex is where its transform brings it in doubles.
+Prepared prepare_in_doubles(const scene::Scene& scene, const TreeOptions& options) {
+  if (has_shapes(scene) || std::ranges::any_of(scene.meshes, [](const auto& m) { return has_shapes(*m); }))
+    throw input_error(scene.name, 0, "primitives other than triangles, which a scene of doubles doesn't have",
+                      "leave them out, or ask about it in floats");
+  if (scene.instances.empty()) return prepare_copied(scene, {}, options);
+  scene::Scene copied = scene;
+  scene::Copies copies = scene::flatten_instances(copied);
+  return prepare_copied(copied, std::move(copies), options);
+}
+
+}  // namespace
+
 Prepared prepare(const scene::Scene& scene, const TreeOptions& options,
                  const std::optional<LocalSpace>& kept) {
   const Timer timer;
-  const bool in_doubles = options.geometry == Precision::float64;
-  const scene::Geometry geometry =
-      in_doubles ? scene::make_geometry_for_doubles(scene) : scene::make_geometry(scene, kept);
-  const kdtree::BuildConfig config = config_of(options, std::max(geometry.size(), largest_mesh(scene)));
-  const double seconds = timer.seconds();
-  Prepared made = options.memory_bytes > 0
-                      ? prepare_within(scene, geometry, config, options.binary_form, options.memory_bytes)
-                      : prepare(scene, geometry, config, options.binary_form);
-  if (in_doubles)
-    made.doubles = std::make_shared<scene::DoubleTriangles>(scene::make_double_triangles(scene, geometry));
+  const bool in_doubles =
+      options.geometry == VertexPrecision::float64 ||
+      (options.geometry == VertexPrecision::automatic && may_be_in_doubles(scene) && !fits_floats(scene));
+  Prepared made = in_doubles ? prepare_in_doubles(scene, options)
+                             : prepare_as(options, scene, scene::make_geometry(scene, kept));
+  if (in_doubles && options.geometry == VertexPrecision::automatic)
+    made.settings.warnings.push_back(
+        "its vertices are no floats: questions are answered in doubles (slower)");
   made.tree_options = options;
-  made.seconds.build += seconds;
+  made.seconds.build = timer.seconds() - made.seconds.flatten;
   return made;
 }
 

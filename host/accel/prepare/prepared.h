@@ -5,10 +5,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "accel/flatten/flatten.h"
@@ -22,6 +24,15 @@
 #include "scene/model/scene.h"
 
 namespace kdray::prepare {
+
+// The names of the qualities that a tree is built with, as options, reports and statistics have them.
+
+// The names come in the order of BuildQuality.
+inline constexpr std::array<std::string_view, 3> kQualityNames = {"fast", "balanced", "best"};
+
+constexpr std::string_view name_of(BuildQuality quality) {
+  return kQualityNames[static_cast<std::size_t>(quality)];
+}
 
 struct Counts {
   std::uint64_t primitives = 0;  // of the file, degenerate ones too

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <new>
 #include <string>
@@ -9,6 +10,18 @@
 
 #include "kdray.h"
 #include "kdray/kdray.h"
+
+// What the opaque handles of kdray.h are.
+struct kdray_scene {
+  kdray::Scene scene;
+  kdray::CommitReport report;  // of the last commit
+};
+struct kdray_cancel {
+  kdray::Cancel cancel;
+};
+struct kdray_all_hits {
+  kdray::AllHits hits;
+};
 
 namespace kdray::capi {
 
@@ -91,5 +104,20 @@ template <class View, class Given>
 View view_of(const Given& given, const char* name) {
   return rows_of(static_cast<View*>(nullptr), given, name);
 }
+
+// Colours, vectors and cameras of kdray.h as C++'s.
+inline Color color(const float (&c)[3]) {
+  return {c[0], c[1], c[2]};
+}
+
+inline Vec3 vector(const double (&v)[3]) {
+  return {v[0], v[1], v[2]};
+}
+// The same, or what three zeros stand for.
+inline Vec3 vector_or(const double (&v)[3], const Vec3& none) {
+  return vector(v) == Vec3{0, 0, 0} ? none : vector(v);
+}
+
+Camera camera_of(const kdray_camera* given);
 
 }  // namespace kdray::capi

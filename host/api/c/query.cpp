@@ -2,8 +2,6 @@
 #include <cmath>
 
 #include "api/c/boundary.h"
-#include "api/c/handles.h"
-#include "api/c/values.h"
 
 namespace kdray::capi {
 
@@ -118,7 +116,8 @@ kdray_status kdray_closest_points(const kdray_scene* scene, kdray_in points,
                                view_of<WordsOut>(p.geometry, "out.geometry"),
                                view_of<WordsOut>(p.primitive, "out.primitive"),
                                view_of<ValuesOut>(p.u, "out.u"),
-                               view_of<ValuesOut>(p.v, "out.v")};
+                               view_of<ValuesOut>(p.v, "out.v"),
+                               view_of<WordsOut>(p.instance, "out.instance")};
     return s.closest_points(view_of<Points>(points, "points"), out, point_options(o));
   });
 }

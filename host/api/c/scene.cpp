@@ -4,8 +4,6 @@
 #include <utility>
 
 #include "api/c/boundary.h"
-#include "api/c/handles.h"
-#include "api/c/values.h"
 
 namespace kdray::capi {
 
@@ -318,10 +316,12 @@ kdray_status kdray_commit(kdray_scene* scene, const kdray_commit_options* given)
     const kdray_commit_options o = grown(given, "options");
     constexpr BuildQuality kQualities[] = {BuildQuality::balanced, BuildQuality::fast, BuildQuality::best};
     if (o.quality < 0 || o.quality > 2) refuse("options: the quality may be 0, 1 or 2");
-    if (o.geometry < 0 || o.geometry > 1) refuse("options: the geometry may be 0 or 1");
+    constexpr VertexPrecision kGeometries[] = {VertexPrecision::float32, VertexPrecision::float64,
+                                               VertexPrecision::automatic};
+    if (o.geometry < 0 || o.geometry > 2) refuse("options: the geometry may be 0, 1 or 2");
     CommitOptions options;
     options.tree.quality = kQualities[o.quality];
-    options.tree.geometry = o.geometry == 1 ? Precision::float64 : Precision::float32;
+    options.tree.geometry = kGeometries[o.geometry];
     if (o.device != nullptr) options.device.device = o.device;
     options.device.programs = default_program_folder();
     if (o.refit_growth != 0) options.refit_growth = o.refit_growth;

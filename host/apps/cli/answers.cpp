@@ -50,7 +50,7 @@ std::vector<Column> columns_of(std::span<const Hit> hits, const std::vector<std:
 }
 
 void Answers::ask(const query::QueryContext& scene, const RequestedRows& rows, std::size_t n) {
-  placed_ = !scene.scene().flat.instances.empty();
+  placed_ = scene.table.has_instances();
   switch (question_) {
     case Question::closest:
       return ask_closest(scene, rows.rays(n), n);
@@ -102,10 +102,16 @@ void Answers::ask_all(const query::QueryContext& scene, const Rays& rays, std::s
 
 void Answers::ask_closest_point(const query::QueryContext& scene, const Points& points, std::size_t n) {
   t_.resize(n), point_.resize(n), geometry_.resize(n), primitive_.resize(n), u_.resize(n), v_.resize(n);
-  query::closest_points(
-      scene, points,
-      {.distance = t_, .point = point_, .geometry = geometry_, .primitive = primitive_, .u = u_, .v = v_},
-      {});
+  if (placed_) instance_.resize(n);
+  query::closest_points(scene, points,
+                        {.distance = t_,
+                         .point = point_,
+                         .geometry = geometry_,
+                         .primitive = primitive_,
+                         .u = u_,
+                         .v = v_,
+                         .instance = instance_},
+                        {});
 }
 
 std::vector<Column> Answers::columns() const {
@@ -123,12 +129,11 @@ std::vector<Column> Answers::columns() const {
     case Question::count:
       return {column_of("count", counts_)};
     case Question::closest_point:
-      return {column_of("distance", t_),
-              column("point", std::span<const std::array<double, 3>>(point_)),
-              column_of("geometry", geometry_),
-              column_of("primitive", primitive_),
-              column_of("u", u_),
-              column_of("v", v_)};
+      return with_instances(
+          {column_of("distance", t_), column("point", std::span<const std::array<double, 3>>(point_)),
+           column_of("geometry", geometry_), column_of("primitive", primitive_), column_of("u", u_),
+           column_of("v", v_)},
+          placed_, instance_);
     case Question::signed_distance:
       return {column_of("distance", t_)};
     case Question::inside:

@@ -10,7 +10,6 @@
 
 #include "api/committed.h"
 #include "apps/cli/question.h"
-#include "apps/cli/requested_rows.h"
 #include "io/array/table.h"
 #include "kdray/query.h"
 

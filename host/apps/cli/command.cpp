@@ -3,17 +3,19 @@
 #include <fmt/format.h>
 #include <malloc.h>
 
+#include <algorithm>
 #include <exception>
 #include <new>
-#include <string>
-#include <vector>
+#include <string_view>
 
 #include "apps/cli/help.h"
 #include "apps/cli/output.h"
-#include "apps/cli/suggestion.h"
-#include "apps/cli/version.h"
+#include "base/error.h"
 #include "base/signals.h"
+#include "build_facts.h"
+#include "commit.h"
 #include "kdray/error.h"
+#include "scene/import/load.h"
 
 namespace kdray::cli {
 
@@ -102,6 +104,128 @@ int run_program(const std::function<int()>& run) {
     say(error.what());
     return exit_code(ErrorCode::internal);
   }
+}
+
+namespace {
+
+std::string line(std::string_view name, std::string_view text) {
+  return text.empty() ? "" : fmt::format("{:<10}{}\n", name, text);
+}
+
+// "JPEG pictures; no WebP pictures"
+std::string formats() {
+  std::string text;
+  for (const scene::Ability& a : scene::abilities())
+    text += fmt::format("{}{}{}", text.empty() ? "" : "; ", a.here ? "" : "no ", a.what);
+  return text;
+}
+
+}  // namespace
+
+std::string version_text() {
+  const std::string_view commit = KDRAY_COMMIT, mpi = KDRAY_MPI, page = KDRAY_PAGE;
+  return "kdray " KDRAY_VERSION "\n" +
+         line("commit", commit.empty() ? "" : fmt::format("{} of {}", commit, KDRAY_COMMIT_DATE)) +
+         line("compiler", KDRAY_COMPILER ", " KDRAY_BUILD_TYPE ", " KDRAY_PROCESSOR KDRAY_SANITIZERS) +
+         line("OpenCL", "headers " KDRAY_OPENCL_HEADERS
+                        "; PoCL and other drivers are found when it runs: kdray devices") +
+         line("MPI", mpi == "ON" ? "libkdray-mpi.so was built" : "none: MPI was missing") +
+         line("page", page == "ON" ? "kdray view is there" : "none: Boost or libjpeg-turbo was missing") +
+         line("reads", formats());
+}
+
+std::string commit_date() {
+  return KDRAY_COMMIT_DATE;
+}
+
+namespace {
+
+struct OtherWord {
+  std::string_view word, ours;
+};
+
+// Options of other renderers and viewers, and what they are here.
+constexpr OtherWord kOtherWords[] = {
+    {"width", "--size WxH"},
+    {"height", "--size WxH"},
+    {"resolution", "--size WxH"},
+    {"res", "--size WxH"},
+    {"dimensions", "--size WxH"},
+    {"geometry", "--size WxH"},
+    {"w", "--size WxH"},
+    {"W", "--size WxH"},
+    {"H", "--size WxH"},
+    {"spp", "--samples"},
+    {"antialias", "--samples"},
+    {"antialiasing", "--samples"},
+    {"anti-aliasing", "--samples"},
+    {"aa", "--samples"},
+    {"max-depth", "--depth"},
+    {"bounces", "--depth"},
+    {"max-bounces", "--depth"},
+    {"recursion", "--depth"},
+    {"out", "--output"},
+    {"outfile", "--output"},
+    {"eye", "--from"},
+    {"position", "--from"},
+    {"camera-position", "--from"},
+    {"lookfrom", "--from"},
+    {"look-from", "--from"},
+    {"lookat", "--at"},
+    {"look-at", "--at"},
+    {"target", "--at"},
+    {"camera-target", "--at"},
+    {"focal-point", "--at"},
+    {"camera-focal-point", "--at"},
+    {"up-axis", "--up"},
+    {"view-up", "--up"},
+    {"camera-view-up", "--up"},
+    {"angle", "--fov"},
+    {"view-angle", "--fov"},
+    {"camera-view-angle", "--fov"},
+    {"field-of-view", "--fov"},
+    {"zoom", "--fov"},
+    {"orthographic", "--ortho"},
+    {"bg", "--background"},
+    {"bg-color", "--background"},
+    {"background-color", "--background"},
+    {"no-background", "--background transparent"},
+    {"transparent", "--background transparent"},
+    {"alpha", "--background transparent"},
+    {"gpu", "--device gpu"},
+    {"cpu", "--device cpu"},
+    {"channels", "--aov"},
+    {"passes", "--aov"},
+    {"normals", "--aov normal"},
+    {"seconds", "--time"},
+    {"animation-time", "--time"},
+    {"framerate", "--fps"},
+    {"silent", "--quiet"},
+};
+
+std::string_view without_dashes(std::string_view word) {
+  return word.substr(std::min(word.find_first_not_of('-'), word.size()));
+}
+
+// Returns our option for another program's, where the command has it; nothing otherwise.
+std::string_view counterpart(std::string_view word, const std::vector<std::string>& names) {
+  const auto* const found = std::ranges::find(kOtherWords, without_dashes(word), &OtherWord::word);
+  if (!word.starts_with('-') || found == std::end(kOtherWords)) return {};
+  const std::string_view option = found->ours.substr(0, found->ours.find(' '));
+  return std::ranges::find(names, option) == names.end() ? std::string_view() : found->ours;
+}
+
+}  // namespace
+
+std::string suggestion(const std::string& word, const std::vector<std::string>& names) {
+  if (const std::string_view ours = counterpart(word, names); !ours.empty())
+    return fmt::format("did you mean '{}'? ", ours);
+  const bool is_option = word.starts_with("--");
+  std::vector<std::string_view> comparable;
+  for (const std::string& name : names)
+    if (name.starts_with("--") == is_option) comparable.push_back(without_dashes(name));
+  const std::string_view nearest = nearest_name(without_dashes(word), comparable);
+  return nearest.empty() ? "" : fmt::format("did you mean '{}{}'? ", is_option ? "--" : "", nearest);
 }
 
 }  // namespace kdray::cli

@@ -7,8 +7,11 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+
 #include <functional>
 #include <span>
+#include <string>
+#include <vector>
 
 namespace kdray::cli {
 
@@ -38,5 +41,20 @@ int parse_and_run(CLI::App& app, std::span<const char* const> arguments, std::sp
 
 // Runs it and returns what main() is to return.
 int run_program(const std::function<int()>& run);
+
+// What this kdray is and what it was built with. Nothing of the machine, the folder or the time: two builds
+// of the same source have the same text.
+
+// Returns lines for --version, the first of which is "kdray 0.1.0".
+std::string version_text();
+
+// Returns "2026-11-26": the day of the commit; nothing where the source is no checkout.
+std::string commit_date();
+
+// What was meant by a name that kdray doesn't know: one that is nearly the same, or kdray's own where the
+// name is another program's.
+
+// Returns "did you mean 'render'? ", or nothing when none of the names is near. Options begin with "--".
+std::string suggestion(const std::string& word, const std::vector<std::string>& names);
 
 }  // namespace kdray::cli

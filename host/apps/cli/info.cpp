@@ -15,7 +15,6 @@
 #include "accel/kdtree/build.h"
 #include "accel/kdtree/statistics.h"
 #include "accel/prepare/prepared.h"
-#include "accel/prepare/quality.h"
 #include "apps/cli/command.h"
 #include "apps/cli/info_report.h"
 #include "apps/cli/options.h"

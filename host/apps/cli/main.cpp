@@ -18,7 +18,6 @@
 #include "apps/cli/output.h"
 #include "apps/cli/ranks.h"
 #include "apps/cli/self_test.h"
-#include "apps/cli/suggestion.h"
 #include "base/error.h"
 #include "base/signals.h"
 #include "scene/import/load.h"

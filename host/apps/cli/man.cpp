@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "apps/cli/command.h"
 #include "apps/cli/help.h"
-#include "apps/cli/version.h"
 #include "base/write_file.h"
 
 namespace kdray::cli {

@@ -9,12 +9,12 @@
 #include <limits>
 #include <string_view>
 
-#include "accel/prepare/quality.h"
+#include "accel/prepare/prepared.h"
 #include "apps/cli/help.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "device/tuning/database.h"
-#include "io/image/css_color.h"
+#include "io/image/color.h"
 #include "kdray/kdray.h"
 
 namespace kdray::cli {
@@ -261,9 +261,13 @@ CLI::Option* add_build_option(CLI::App& app, BuildQuality& quality) {
                     quality);
 }
 
-void add_geometry_option(CLI::App& app, Precision& geometry) {
-  add_choice(app, "--geometry", "What vertices are: float (default), double (of meshes: exact, and slower)",
-             kPrecisions, geometry);
+void add_geometry_option(CLI::App& app, VertexPrecision& geometry) {
+  static constexpr std::array<std::string_view, 3> kGeometries = {"float", "double", "auto"};
+  add_choice(
+      app, "--geometry",
+      "What vertices are: float (default), double (of meshes: exact, and slower), or auto: double where "
+      "they are no floats",
+      kGeometries, geometry);
 }
 
 void add_tree_options(CLI::App& app, TreeOptions& tree) {

@@ -109,7 +109,7 @@ struct CacheChoice {
 void add_cache_options(CLI::App& app, CacheChoice& cache);
 
 CLI::Option* add_build_option(CLI::App& app, BuildQuality& quality);
-void add_geometry_option(CLI::App& app, Precision& geometry);
+void add_geometry_option(CLI::App& app, VertexPrecision& geometry);
 
 // --build --tree-depth --cost-traverse --cost-intersect
 void add_tree_options(CLI::App& app, TreeOptions& tree);

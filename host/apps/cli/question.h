@@ -4,11 +4,18 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+
+#include <array>
+#include <cstddef>
+#include <span>
 #include <string>
+#include <variant>
+#include <vector>
 
 #include "io/array/rows_file.h"
 #include "io/array/table.h"
 #include "kdray/options.h"
+#include "kdray/query.h"
 
 namespace kdray::cli {
 
@@ -42,10 +49,31 @@ struct TraceRequest {
 };
 TraceRequest request_of(const QuestionArgs& args);
 
-// By the ending of the file's name; to stdout ("-") an .npy where it holds the answers.
+// By the ending of the file's name; for stdout ("-") .npy, or .npz where .npy can't hold the answers.
 array::TableFormat format_of(const std::string& output, Question question);
 
 // Throws for a walk, or a precision of kernels or geometry, in which there is no answer to that question.
-void check_walk(Question question, Traversal traversal, Precision precision, Precision geometry);
+void check_walk(Question question, Traversal traversal, Precision precision, VertexPrecision geometry);
+
+// The rays or points that kdray trace asks about, as their file has them: float or double. Views of them,
+// as the API takes them (kdray/query.h). Errors: kdray::Error: the file's own (io/array/rows_file.h);
+// ErrorCode::out_of_memory where they and their answers don't fit.
+class RequestedRows {
+ public:
+  // Reads all of the file. `free`: bytes of memory.
+  RequestedRows(array::RowsFile& file, const TraceRequest& request, std::uint64_t free);
+
+  std::size_t size() const;
+  // Views of the first n.
+  Rays rays(std::size_t n) const;
+  Points points(std::size_t n) const;
+  // All of them, where they are rays of floats.
+  std::span<const Ray> structs() const { return std::get<std::vector<Ray>>(rows_); }
+
+ private:
+  template <class T, std::size_t N>
+  using Rows = std::vector<std::array<T, N>>;
+  std::variant<std::vector<Ray>, Rows<double, 8>, Rows<float, 3>, Rows<double, 3>> rows_;
+};
 
 }  // namespace kdray::cli

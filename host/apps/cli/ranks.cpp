@@ -16,7 +16,6 @@
 #include "apps/cli/options.h"
 #include "apps/cli/output.h"
 #include "base/text.h"
-#include "cluster/transport/launcher.h"
 #include "cluster/transport/mpi.h"
 #include "cluster/transport/simulated.h"
 

@@ -10,12 +10,12 @@
 #include <string>
 
 #include "api/hooks.h"
+#include "apps/cli/camera_path.h"
 #include "apps/cli/open_scene.h"
 #include "apps/cli/options.h"
 #include "apps/cli/render_options.h"
 #include "apps/cli/run_files.h"
 #include "apps/cli/scene_input.h"
-#include "apps/cli/turntable.h"
 #include "base/timer.h"
 #include "io/image/picture_file.h"
 #include "kdray/kdray.h"
@@ -47,7 +47,7 @@ class FrameMaker {
   // `o` has the arguments of the first frame.
   explicit FrameMaker(RenderArgs& o);
 
-  // Has the frames from the next one on seen after so many turns about the scene (turntable.h).
+  // Has the frames from the next one on seen after so many turns about the scene (Turntable).
   void turn(const RenderArgs& o, double turns);
 
   // Renders a frame of the scene, and writes its files.

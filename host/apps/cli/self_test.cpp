@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "kdray/kdray.h"
-#include "probe/trial/request.h"
 #include "probe/trial/trial.h"
 #include "scene/model/scene.h"
 

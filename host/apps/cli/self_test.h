@@ -1,5 +1,5 @@
 // What    A scene with answers known in closed form, traced and rendered on a device: does it compute
-//         rightly? And `kdray --try`, the child of a trial (probe/trial/request.h), which may be asked for
+//         rightly? And `kdray --try`, the child of a trial (probe/trial/trial.h), which may be asked for
 //         just that. It is no command: kdray starts it itself.
 #pragma once
 

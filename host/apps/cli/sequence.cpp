@@ -18,7 +18,6 @@
 #include "apps/cli/output.h"
 #include "base/error.h"
 #include "base/hash.h"
-#include "engine/checkpoint/create_once.h"
 #include "engine/checkpoint/leases.h"
 
 namespace kdray::cli {

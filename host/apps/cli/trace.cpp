@@ -13,7 +13,6 @@
 #include "apps/cli/options.h"
 #include "apps/cli/output.h"
 #include "apps/cli/question.h"
-#include "apps/cli/requested_rows.h"
 #include "apps/cli/run_files.h"
 #include "apps/cli/scene_input.h"
 #include "apps/cli/stats.h"
@@ -142,7 +141,7 @@ int run(const TraceArgs& o) {
   array::RowsFile file(request.file, request.wanted());
   // Closest and any hits of floats, which are on the devices before the time counts.
   const bool by_renderer =
-      is_plain(request.question) && !file.in_double() && o.tree.geometry == Precision::float32;
+      is_plain(request.question) && !file.in_double() && o.tree.geometry == VertexPrecision::float32;
   const RequestedRows rows(file, request, free_memory());
   const double read_rays = step.seconds();
 

@@ -16,7 +16,7 @@ using verify::Component;
 using verify::Defect;
 using verify::Findings;
 
-constexpr std::size_t kShown = 100;
+constexpr std::size_t kShownFindings = 100;
 
 // "1 edge", "2 edges"
 std::string counted(std::uint64_t n, const char* what) {
@@ -144,7 +144,7 @@ Json place(const Findings& f, const vec3& p) {
 
 Json edges_json(const Findings& f, const std::vector<verify::Edge>& edges) {
   Json json = {{"count", edges.size()}, {"some", Json::array()}};
-  for (std::size_t i = 0; i < std::min(edges.size(), kShown); ++i)
+  for (std::size_t i = 0; i < std::min(edges.size(), kShownFindings); ++i)
     json["some"].push_back({{"from", place(f, f.mesh.points[edges[i].a])},
                             {"to", place(f, f.mesh.points[edges[i].b])},
                             {"primitive", f.mesh.numbers[edges[i].triangle]}});
@@ -153,7 +153,7 @@ Json edges_json(const Findings& f, const std::vector<verify::Edge>& edges) {
 
 Json faces_json(const Findings& f, const std::vector<std::uint32_t>& faces) {
   Json json = {{"count", faces.size()}, {"some", Json::array()}};
-  for (std::size_t i = 0; i < std::min(faces.size(), kShown); ++i)
+  for (std::size_t i = 0; i < std::min(faces.size(), kShownFindings); ++i)
     json["some"].push_back(f.mesh.numbers[faces[i]]);
   return json;
 }
@@ -165,7 +165,7 @@ double world_volume(const Findings& f, double local) {
 
 Json components_json(const Findings& f) {
   Json json = Json::array();
-  for (std::size_t i = 0; i < std::min(f.topology.components.size(), kShown); ++i) {
+  for (std::size_t i = 0; i < std::min(f.topology.components.size(), kShownFindings); ++i) {
     const Component& c = f.topology.components[i];
     json.push_back({{"faces", c.faces},
                     {"first_primitive", f.mesh.numbers[c.first]},
@@ -202,7 +202,7 @@ Json mesh_json(const Findings& f) {
                  {"one_sided", kinds.one_sided},
                  {"largest", components_json(f)}}}};
   Json& pairs = json["overlapping_pairs"]["some"];
-  for (std::size_t i = 0; i < std::min(f.duplicates.overlapping.size(), kShown); ++i) {
+  for (std::size_t i = 0; i < std::min(f.duplicates.overlapping.size(), kShownFindings); ++i) {
     const auto& [a, b] = f.duplicates.overlapping[i];
     pairs.push_back({f.mesh.numbers[a], f.mesh.numbers[b]});
   }

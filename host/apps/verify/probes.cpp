@@ -12,7 +12,7 @@
 #include <set>
 
 #include "apps/verify/aims.h"
-#include "apps/verify/duplicates.h"
+#include "apps/verify/edges.h"
 #include "apps/verify/exact.h"
 #include "apps/verify/tracer.h"
 

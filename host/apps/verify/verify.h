@@ -13,7 +13,6 @@
 #include <string>
 
 #include "accel/prepare/prepared.h"
-#include "apps/verify/duplicates.h"
 #include "apps/verify/edges.h"
 #include "apps/verify/probes.h"
 #include "io/image/image.h"

@@ -3,9 +3,9 @@
 //         so that it comes in time; and in which steps the picture is made when the camera rests.
 // Shape   While the camera moves, a frame for the newest look, as soon as one can be sent; at rest one step
 //         after the other until the picture is final. At most kMaxInFlight frames are not acknowledged.
-// Why     What a frame takes depends on scene, view and machine: only the last frames tell. Part of that time
-//         is the same for every size (launches, rays too far apart to be traced well), so a frame of a fourth
-//         of the pixels takes more than a fourth of the time; two sizes tell how much more.
+// Why     A frame's time depends on scene, view and machine: only recent frames tell it. Part of that time is
+//         the same for every size (launches, rays too far apart to be traced well), so a frame of a fourth of
+//         the pixels takes more than a fourth of the time; two sizes tell how much more.
 // Threads One at a time.
 #pragma once
 
@@ -65,7 +65,7 @@ class ResolutionController {
 
  private:
   int fitting(double pixels) const;
-  bool is_another(double pixels) const;  // size than the last one
+  bool is_another(double pixels) const;  // whether `pixels` is another size than the last frame's
 
   bool known_ = false;
   double fixed_ = 0, per_pixel_ = 0;  // seconds

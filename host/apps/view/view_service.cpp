@@ -4,7 +4,6 @@
 #include <new>
 #include <utility>
 
-#include "apps/view/pixels.h"
 #include "apps/view/scene_renderer.h"
 #include "base/timer.h"
 

@@ -1,4 +1,4 @@
-#include "cluster/partition/cells.h"
+#include "cluster/partition/scene_partition.h"
 
 #include <algorithm>
 #include <array>

@@ -1,9 +1,9 @@
 // What    What a rank reads of a scene, before it is known which rank will hold what: some of the primitives,
 //         and all that is true of the whole scene; and the facts that each rank finds out about its share,
 //         which together are those of the scene (counts, bounds, what the primitives need of the kernels).
-// Shape   The shares of all ranks are the scene, each primitive once, in the order of ranks in that of the
-//         file. Facts are whole numbers that add up, and boxes that grow: the same bits in any order.
-// Memory  share_of() needs that of the whole scene, until the share is taken.
+// Shape   The shares of all ranks are the scene: each primitive once, in file order, rank by rank. Facts are
+//         whole numbers that add up, and boxes that grow: the same bits in any order.
+// Memory  With share_of() the whole scene is in memory until the share is taken.
 #pragma once
 
 #include <array>

@@ -17,7 +17,9 @@
 
 namespace kdray::transport {
 
-// Tags of one protocol.
+// Tags of one protocol. Its messages are defined for ranks in ranks.cpp, cores mpi.cpp, scenes
+// apps/cli/render_frame.cpp, frames api/job.cpp, tiles pdprt/rank_messages.h, shares together.cpp, and in
+// engine/odprt for lists, divisions and joining in rank_table.h, rays rank_exchange.cpp.
 struct Tags {
   Tag first, last;
   bool hold(Tag tag) const { return first <= tag && tag <= last; }

@@ -23,6 +23,10 @@
 
 namespace kdray::transport {
 
+// Ranks that are threads of one process. Tests run whole frames over them. Each rank has an inbox. A rank
+// may end at any time; what is sent to it after that is lost.
+std::vector<std::unique_ptr<Transport>> in_process(int ranks);
+
 struct Link {
   double latency = 50e-6;                                      // seconds, one way
   double jitter = 0;                                           // times the latency

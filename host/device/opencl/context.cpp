@@ -13,7 +13,7 @@
 
 #include "base/memory.h"
 #include "base/text.h"
-#include "device/opencl/host_memory.h"
+#include "device/opencl/buffers.h"
 #include "device/opencl/opencl_error.h"
 #include "device/opencl/pocl_cache.h"
 #include "device/opencl/program.h"

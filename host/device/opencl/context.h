@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "device/opencl/kept_buffers.h"
+#include "device/opencl/buffers.h"
 #include "device/opencl/opencl.h"
 #include "device/opencl/platform.h"
 #include "device/opencl/program.h"

@@ -1,17 +1,17 @@
 // What    Looks for the fastest settings within a budget of seconds: coordinate descent with a race at each
 //         step.
-// Shape   A race holds candidates against a champion, in rounds in which each renders once, until it is clear
-//         which is fastest. A round's times are compared with the champion's of the same round, since a
-//         machine's speed drifts; every second round runs backwards. A rival that is clearly slower is
-//         dropped at once, and after some rounds more the slower half of those that are left (successive
-//         halving), so that time goes to what may win.
+// Shape   A race compares candidates with a champion, in rounds in which each renders once, until the fastest
+//         is clear. A round's times are compared with the champion's of the same round, since a machine's
+//         speed drifts; every second round runs backwards. A rival that is clearly slower is dropped at once,
+//         and after some rounds more the slower half of those that are left (successive halving), so that
+//         time goes to what may win.
 //         The next setting is the one of the largest expected gain for its cost. The cost is known from how
 //         long frames and compiling took; the expected gain is a guess for a setting that wasn't raced, later
-//         a part of what other settings have gained since (where nothing has changed, nothing need be
-//         measured again). The search ends when no setting's expected gain, over the frames to come, is worth
-//         its race, or none fits into what is left of the budget. At the end the winner meets the start in a
-//         race of more rounds; unless it is surely faster there, and on no scene slower, the start stays: a
-//         search may find nothing, but should never make things worse.
+//         a part of what other settings have gained since (if they gained nothing, it isn't raced again). The
+//         search ends when no setting's expected gain, over the frames to come, is worth its race, or none
+//         fits into what is left of the budget. At the end the winner meets the start in a race of more
+//         rounds; unless it is surely faster there, and on no scene slower, the start stays: a search may
+//         find nothing, but should never make things worse.
 #pragma once
 
 #include <functional>

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/wavefront/curve.h"
+#include "engine/wavefront/tile_order.h"
 
 namespace kdray::adaptive {
 

@@ -1,5 +1,5 @@
-// What    How far pixels are to be refined for an error: all until another sample of any of them is worth as
-//         little.
+// What    How far to refine pixels for a target error: until another sample gains equally little in any of
+//         them.
 // Shape   A pixel of n samples with the squared error v has the price v/n, by which pixels are counted. Each
 //         is refined level by level until its price is not above a limit; the limit is the highest for which
 //         the errors add up to what is wanted.
@@ -7,13 +7,32 @@
 // Source  Neyman, "On the two different aspects of the representative method", 1934, for the allocation.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <vector>
 
-#include "engine/adaptive/report.h"
-
 namespace kdray::adaptive {
+
+// How many samples a pixel has at each level of refinement. There is no level of two, which tell next to
+// nothing of their spread.
+constexpr std::array<std::uint32_t, 6> kSamples = {1, 4, 8, 16, 32, 64};
+constexpr int kLevels = kSamples.size();
+
+constexpr std::uint32_t samples_of(int level) {
+  return kSamples[static_cast<std::size_t>(level)];
+}
+
+// What adaptive sampling tells of a picture: how far its pixels were refined, and the error that it is
+// believed to have.
+struct Report {
+  double target = 0, estimated_rmse = 0;
+  bool met = false;  // the target; else all that could be refined has been
+  int rounds = 0;    // the first one counted
+  std::uint64_t samples = 0;
+  std::array<std::uint64_t, kLevels> pixels{};  // by level
+  std::vector<float> counts;                    // samples of each pixel
+};
 
 // A pixel's squared error at a level, as a share of its samples' variance: n^-1.5, as of stratified samples
 // of an edge. A single sample lies in the centre, which halves it.

@@ -10,8 +10,8 @@
 #include <limits>
 #include <numeric>
 
+#include "engine/adaptive/blocks.h"
 #include "engine/adaptive/contrast.h"
-#include "engine/adaptive/neighbours.h"
 
 namespace kdray::adaptive {
 

@@ -19,7 +19,6 @@
 #include "base/vec.h"
 #include "engine/adaptive/blocks.h"
 #include "engine/adaptive/plan.h"
-#include "engine/adaptive/report.h"
 #include "layout/frame.layout.h"
 
 namespace kdray::adaptive {

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "base/timer.h"
-#include "engine/checkpoint/create_once.h"
+#include "engine/checkpoint/leases.h"
 
 namespace kdray::checkpoint {
 

@@ -22,8 +22,8 @@
 
 #include "engine/checkpoint/header.h"
 #include "engine/checkpoint/leases.h"
+#include "engine/checkpoint/record_file.h"
 #include "engine/checkpoint/record_index.h"
-#include "engine/checkpoint/tile_file.h"
 #include "kdray/options.h"
 
 namespace kdray::checkpoint {

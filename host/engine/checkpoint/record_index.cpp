@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "engine/checkpoint/tile_file.h"
+#include "engine/checkpoint/record_file.h"
 
 namespace kdray::checkpoint {
 

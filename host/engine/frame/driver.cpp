@@ -13,7 +13,7 @@
 #include "base/memory.h"
 #include "base/timer.h"
 #include "engine/adaptive/sampler.h"
-#include "engine/wavefront/curve.h"
+#include "engine/wavefront/tile_order.h"
 
 namespace kdray::frame {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "cluster/transport/message_bytes.h"
-#include "engine/adaptive/report.h"
+#include "engine/adaptive/plan.h"
 #include "engine/wavefront/counters.h"
 
 namespace kdray::frame {

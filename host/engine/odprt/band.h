@@ -17,7 +17,7 @@
 #include "engine/odprt/render.h"
 #include "engine/odprt/shares.h"
 #include "engine/odprt/worker_pool.h"
-#include "engine/wavefront/bands.h"
+#include "engine/wavefront/tile_order.h"
 
 namespace kdray::odprt {
 

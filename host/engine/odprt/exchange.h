@@ -3,7 +3,7 @@
 // Shape   A queue takes turns: it waits until it has something to do, takes what has come for the part that
 //         it serves, launches, and hands over what the launch left. Rays for a part whose queue shares the
 //         sender's context lie in the sender's outbox until the receiver has read them; others come by the
-//         host's memory (host_ray_queue.h). Where a queue has several parts, it goes on with one as long as
+//         host's memory (outbox.h). Where a queue has several parts, it goes on with one as long as
 //         there is something to do, then to the one for which most rays wait.
 // Why     A queue waits for another only when it has no outbox left that isn't being read, or no credits:
 //         receivers read before they launch and need nothing for it, so no ring of queues can wait for each
@@ -24,7 +24,6 @@
 #include <span>
 #include <vector>
 
-#include "engine/odprt/host_ray_queue.h"
 #include "engine/odprt/outbox.h"
 #include "engine/odprt/plan.h"
 #include "engine/odprt/rank_table.h"

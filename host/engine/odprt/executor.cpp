@@ -8,10 +8,9 @@
 
 #include "base/process_memory.h"
 #include "engine/frame/driver.h"
+#include "engine/odprt/assign.h"
 #include "engine/odprt/band.h"
-#include "engine/odprt/queue_failure.h"
-#include "engine/odprt/rank_lists.h"
-#include "engine/odprt/replicate.h"
+#include "engine/odprt/rank_table.h"
 
 namespace kdray::odprt {
 

@@ -1,4 +1,4 @@
-#include "engine/odprt/parts.h"
+#include "engine/odprt/division.h"
 
 #include <tbb/parallel_for.h>
 
@@ -11,8 +11,8 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "engine/odprt/kinds.h"
-#include "engine/odprt/replicate.h"
+#include "engine/odprt/assign.h"
+#include "engine/odprt/subtrees.h"
 #include "layout/instances.layout.h"
 #include "layout/primitives.layout.h"
 #include "layout/wide.layout.h"

@@ -16,11 +16,11 @@ constexpr std::uint32_t kBatch = 512;                     // large batches keep 
 constexpr std::uint32_t kWaves = 16, kLaunchWaves = 256;  // of a slice in a launch, and of all slices
 constexpr std::uint32_t kRayWaves = 8;                    // ... where every ray has a work-item
 // For all slices together, how many rays of a depth may be alive, and how many an outbox holds for a part.
-constexpr std::uint32_t kRays = 1u << 16, kOutboxRays = 1u << 13;
+constexpr std::uint32_t kPoolRays = 1u << 16, kOutboxRays = 1u << 13;
 constexpr std::uint32_t kMostPlaces = 4;
 // Shadow rays that may leave where there is nowhere to go.
 constexpr std::uint32_t kAnyNumber = 1u << 30;
-// Where every ray has a work-item, all lights' shadow rays of so many rays have room, as far as that is not
+// Where every ray has a work-item, all lights' shadow rays of so many rays have space, as far as that is not
 // too much: a wave is many launches where there are many lights.
 constexpr std::uint64_t kLitRays = 256, kMostLit = 1u << 22;
 // Where the host sorts: rays that may wait in its memory, in a queue's pool, and in the outbox.
@@ -33,7 +33,7 @@ std::uint32_t level_capacity(const PlanRequest& r, std::uint32_t batch, std::uin
                              std::uint32_t n_slices) {
   if (r.ray_buffer > 0) return std::max(4 * r.ray_buffer, 2 * least * r.n_ranks);
   const std::uint32_t in_work = batch * (std::min(least, 4u) * r.n_queues + 2);
-  return std::max({(r.streamed ? kStreamedRays : kRays) / n_slices, in_work, 2 * least * r.n_ranks});
+  return std::max({(r.streamed ? kStreamedRays : kPoolRays) / n_slices, in_work, 2 * least * r.n_ranks});
 }
 
 constexpr std::size_t kRayBytes = KDRAY_TRAVEL_RAY_FIELDS * sizeof(float);

@@ -33,9 +33,9 @@ struct PlanRequest {
   bool streamed = false;   // parts come and go: rays wait in the host's memory, and there may be many
 };
 
-// Whether all rays go through the host, which sorts them: where parts come and go, or where there are so
-// many that a place for each, and pools for all that may come, would take too much. What finds no room on
-// the device waits in the host's memory.
+// Whether all rays go through the host, which sorts them: where parts come and go, or where there are so many
+// that a place for each, and pools for all that may come, would take too much. Rays that find no space on the
+// device wait in the host's memory.
 bool host_sorts(const PlanRequest& request);
 
 // `frame` has tiles; its batch, pool and shadow sizes are set.

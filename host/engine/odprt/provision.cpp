@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "base/error.h"
-#include "engine/odprt/part_store.h"
+#include "engine/odprt/worker_pool.h"
 
 namespace kdray::odprt {
 

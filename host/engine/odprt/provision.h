@@ -10,7 +10,7 @@
 #include "engine/odprt/plan.h"
 #include "engine/odprt/render.h"
 #include "engine/odprt/worker.h"
-#include "engine/wavefront/bands.h"
+#include "engine/wavefront/tile_order.h"
 #include "layout/odprt.layout.h"
 
 namespace kdray::odprt {

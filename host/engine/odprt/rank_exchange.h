@@ -17,10 +17,10 @@
 #include <functional>
 #include <vector>
 
-#include "engine/odprt/credit_debts.h"
 #include "engine/odprt/exchange.h"
 #include "engine/odprt/rank_table.h"
 #include "engine/odprt/ray_batch.h"
+#include "engine/odprt/ray_credits.h"
 #include "engine/odprt/shares.h"
 #include "engine/odprt/termination_detector.h"
 

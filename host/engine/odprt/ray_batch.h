@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "cluster/transport/message_bytes.h"
-#include "engine/odprt/host_ray_queue.h"
+#include "engine/odprt/outbox.h"
 
 namespace kdray::odprt {
 

@@ -1,4 +1,4 @@
-#include "engine/odprt/ray_stages.h"
+#include "engine/odprt/worker.h"
 
 #include <algorithm>
 

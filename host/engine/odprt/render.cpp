@@ -3,21 +3,53 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <numeric>
 
 #include "accel/flatten/instance_openings.h"
 #include "base/error.h"
 #include "base/timer.h"
-#include "engine/odprt/cost_probe.h"
-#include "engine/odprt/divide_partition.h"
+#include "engine/odprt/assign.h"
 #include "engine/odprt/executor.h"
-#include "engine/odprt/queue_failure.h"
-#include "engine/odprt/rank_lists.h"
-#include "engine/odprt/replicate.h"
+#include "engine/odprt/rank_table.h"
 
 namespace kdray::odprt {
 
 namespace {
+
+constexpr std::uint32_t kShrink = 8;  // pixels of the frame to one of the probe's, along each side
+constexpr std::uint32_t kTile = 16;
+
+// The same view in fewer pixels: each looks along the middle of those that it stands for.
+layout::Frame small_frame(layout::Frame frame) {
+  frame.width = (frame.width + kShrink - 1) / kShrink;
+  frame.height = (frame.height + kShrink - 1) / kShrink;
+  frame.x_scale *= kShrink;
+  frame.y_scale *= kShrink;
+  frame.n_samples = 1;
+  frame.tile_width = frame.tile_height = kTile;
+  frame.n_tiles_x = (frame.width + kTile - 1) / kTile;
+  frame.n_tiles = frame.n_tiles_x * ((frame.height + kTile - 1) / kTile);
+  return frame;
+}
+
+// A small frame of the whole scene on one queue, which counts how many rays come to each subtree: what the
+// subtrees' costs are estimated by before the scene is divided. `whole` is the scene in one part.
+std::vector<SubtreeUse> probe_costs(const Request& request, const Division& whole, const Cut& cut) {
+  Request probe = request;
+  probe.queues.resize(1);
+  probe.table = alone(1);
+  probe.n_slices = (request.n_slices + 3) / 4;  // its tiles are few
+  probe.frame = small_frame(request.frame);
+  probe.adaptive_target = 0;
+  probe.census_every = 1;
+  probe.device_memory = 0;
+  probe.timeline = nullptr;
+  probe.fault_injector = nullptr;
+  probe.progress = {};
+  probe.checkpoint = nullptr;
+  return render_frame(probe, provide(probe, 0), whole, cut).visits;
+}
 
 constexpr std::size_t kSubtreesPerPart = 16, kLeastSubtrees = 64, kMostSubtrees = 512, kFewPerPart = 4;
 // A queue may hold so much more than an equal share of the geometry. Less is replicated where primitives in

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "cluster/transport/together.h"
-#include "engine/frame/executor.h"
+#include "engine/frame/driver.h"
 #include "engine/frame/result.h"
 #include "engine/odprt/division.h"
 #include "engine/odprt/exchange.h"
@@ -76,7 +76,7 @@ struct Provision;
 // A scene that frames are rendered of, and what has been learned about its costs.
 class DividedScene {
  public:
-  // `all`: of ranks, if the scene is what this one holds of it (divide_partition.h); they have one table in
+  // `all`: of ranks, if the scene is what this one holds of it (division.h); they have one table in
   // all frames.
   DividedScene(flatten::FlatScene flat, flatten::WideForm wide,
                std::shared_ptr<transport::Together> all = nullptr);

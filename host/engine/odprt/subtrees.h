@@ -9,13 +9,29 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "accel/flatten/leaf_block.h"
 #include "accel/flatten/wide.h"
 #include "base/box.h"
+#include "layout/wide.layout.h"
+#include "scene/primitives/kinds.h"
 
 namespace kdray::odprt {
+
+// The kinds of primitives in a wide form, by number: how many rows their blocks have, and where these are.
+using primitives::kKinds;
+
+#define KDRAY_ROWS_OF_KIND(NAME, name, names, Struct) KDRAY_##NAME##_ROWS,
+inline constexpr std::array<std::uint32_t, kKinds> kBlockRows = {KDRAY_KINDS(KDRAY_ROWS_OF_KIND)};
+#undef KDRAY_ROWS_OF_KIND
+
+template <class Form>
+auto& blocks_of(Form& form, std::uint32_t number) {
+  return primitives::with_kind(
+      number, [&](auto kind) -> auto& { return decltype(kind)::blocks_of(form); });
+}
 
 using flatten::bounds_of_child, flatten::is_instance;
 
@@ -52,4 +68,27 @@ Cut cut(const flatten::FlatScene& scene, const flatten::WideForm& form, std::siz
 
 // The number of blocks of a leaf; an instance counts as one.
 std::uint32_t leaf_blocks(const flatten::WideForm& form, layout::u32 leaf);
+
+// Tells which subtree of a cut a point lies in. Cells are disjoint, so that a point of a surface lies in
+// one subtree's bounds, or, where rounding has moved it out, nearest to them; on a plane between two, which
+// hold what lies in it both, in either.
+class Locator {
+ public:
+  // Refers to both.
+  Locator(const flatten::WideForm& form, const Cut& cut) : form_(form), cut_(cut) {}
+
+  // None for a cut without subtrees.
+  std::optional<std::uint32_t> find(const vec3& point) const;
+
+ private:
+  struct Nearest {
+    float distance;  // squared
+    std::optional<std::uint32_t> subtree = {};
+  };
+  void look_below(std::size_t opened, const vec3& point, Nearest& nearest) const;
+
+  const flatten::WideForm& form_;
+  const Cut& cut_;
+};
+
 }  // namespace kdray::odprt

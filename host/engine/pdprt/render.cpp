@@ -11,7 +11,7 @@
 #include "engine/pdprt/tile_client.h"
 #include "engine/pdprt/tile_server.h"
 #include "engine/pdprt/worker_pool.h"
-#include "engine/wavefront/curve.h"
+#include "engine/wavefront/tile_order.h"
 
 namespace kdray::pdprt {
 
@@ -139,7 +139,7 @@ frame::Entries Executor::serve(frame::List list, const frame::Sink& sink, const 
   return left;
 }
 
-// Rank 0's devices decide how a frame is cut into bands; this rank has room for the same.
+// Rank 0's devices decide how a frame is cut into bands; this rank has space for the same.
 void Executor::check_entries(const Begin& list) const {
   const bool known = std::ranges::any_of(
       bands_, [&](const wavefront::Band& band) { return band.first_pixel == list.first_pixel; });

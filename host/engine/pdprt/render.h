@@ -15,10 +15,10 @@
 #include <vector>
 
 #include "cluster/transport/ranks.h"
-#include "engine/frame/executor.h"
+#include "engine/frame/driver.h"
 #include "engine/frame/result.h"
 #include "engine/pdprt/tile_hierarchy.h"
-#include "engine/pdprt/tile_size.h"
+#include "engine/pdprt/tiles.h"
 #include "engine/wavefront/wavefront.h"
 
 namespace kdray::pdprt {
@@ -34,8 +34,8 @@ struct Device {
 // Stands for a tile that no queue of this process has rendered: it was found in a checkpoint.
 inline constexpr std::uint32_t kNobody = 0xffffffffu;
 
-// Samples of one round of adaptive sampling that a queue's film has room for at least, so that small pictures
-// don't take many lists for one.
+// Samples of one round of adaptive sampling that a queue's film has space for at least, so that small
+// pictures don't take many lists for one.
 inline constexpr std::size_t kLeastSamples = std::size_t{1} << 18;
 
 // Its frame is without a schedule (flatten::make_frame). The timeline also asks for Result::tile_seconds.

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/pdprt/prefetch_policy.h"
 #include "engine/pdprt/rank_messages.h"
+#include "engine/pdprt/tile_hierarchy.h"
 #include "engine/pdprt/tile_server.h"
 #include "engine/pdprt/tiles.h"
 

@@ -14,8 +14,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "engine/frame/executor.h"
-#include "engine/pdprt/prefetch_policy.h"
+#include "engine/frame/driver.h"
 #include "engine/pdprt/rank_messages.h"
 #include "engine/pdprt/tile_hierarchy.h"
 #include "engine/pdprt/tiles.h"

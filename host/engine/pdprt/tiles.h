@@ -6,9 +6,11 @@
 // Threads Any number; a queue's calls come from one thread at a time.
 #pragma once
 
+#include <algorithm>
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,6 +18,28 @@
 #include "layout/frame.layout.h"
 
 namespace kdray::pdprt {
+
+// The size of tiles where none is asked for: small enough that the costliest one is a small part of what a
+// compute unit has to do, since the last tile to be begun keeps the frame waiting; large otherwise, since
+// rays of a tile are alike and share what they fetch.
+
+// What the tiles of a rendered frame cost.
+struct TileCost {
+  std::uint64_t tile_pixels = 0;
+  double costliest = 0, total = 0;  // seconds of a compute unit
+
+  void add(const TileCost& of_others) {
+    costliest = std::max(costliest, of_others.costliest);
+    total += of_others.total;
+  }
+};
+
+constexpr std::uint32_t kLargestTile = 32;
+
+// A square tile's side, `largest` at most. `n_units`: the compute units of all queues. `measured`: of the
+// last frame of these sides.
+std::uint32_t choose_tile_side(std::uint32_t width, std::uint32_t height, std::uint32_t n_units,
+                               const std::optional<TileCost>& measured, std::uint32_t largest = kLargestTile);
 
 // What a queue wants from the bag: a part of what is left there, so that all come to their end together, but
 // no more than `most` and no less than `least`; all of that together with the `ahead` that it has.

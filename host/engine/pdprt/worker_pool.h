@@ -1,7 +1,7 @@
 // What    The queues of this process, at work on a list of tiles: a thread for each.
 // Errors  A queue whose device fails, or has too little memory, is left alone from then on: the others render
 //         the tiles that it has not delivered. The error of the last queue, when all fail. Any other error
-//         ends the list (device/opencl/opencl_error.h).
+//         ends the list (device/opencl/opencl_error.h). ODPRT has odprt/executor.h for this.
 #pragma once
 
 #include <condition_variable>

@@ -53,7 +53,7 @@ class Collection {
   }
 
  private:
-  // Makes room for the chunk's hits, and says where each ray's begin: how many there are.
+  // Makes space for the chunk's hits, and says where each ray's begin: how many there are.
   std::size_t place(std::span<const QuerySpan> spans) {
     const std::size_t first = to_.t.size();
     places_.resize(spans.size());
@@ -92,7 +92,7 @@ class Collection {
               passes_.has_instances() ? grow(to_.instance) : nullptr};
   }
 
-  // Behind the hits of the first pass, which have left room for them.
+  // Behind the hits of the first pass, which have left space for them.
   void fill_in_later(std::span<const QuerySpan> spans) {
     std::uint32_t ray = 0;
     std::size_t at = 0;

@@ -102,7 +102,7 @@ class Answer {
   static constexpr std::uint64_t kBytesPerHit =
       sizeof(double) + 2 * sizeof(float) + 3 * sizeof(std::uint32_t);
 
-  // Makes room for more rays with their hits: where these begin.
+  // Makes space for more rays with their hits: where these begin.
   template <class CountOf>
   std::size_t begin(const auto& more, const CountOf& count_of) {
     const std::size_t before = hits_.t.size();
@@ -155,16 +155,13 @@ class Answer {
 
   // `instance`: by its place in the scene's list.
   void put(std::size_t at, double t, double u, double v, std::uint32_t number, std::uint32_t instance) {
-    const bool placed = instance != kNoInstance;
-    const auto shown =
-        placed ? context_->table.of_instance(instance) : GeometryTable::InstancePlace{0, kNoInstance};
-    const auto place = placed ? GeometryTable::Place{shown.geometry, number} : context_->table.of(number);
+    const GeometryTable::Place place = context_->table.of(number, instance);
     hits_.t[at] = t;
     hits_.geometry[at] = place.geometry;
     hits_.primitive[at] = place.primitive;
-    hits_.u[at] = static_cast<float>(u);
-    hits_.v[at] = static_cast<float>(v);
-    hits_.instance[at] = shown.instance;
+    hits_.u[at] = static_cast<float>(place.is_mirrored ? v : u);
+    hits_.v[at] = static_cast<float>(place.is_mirrored ? u : v);
+    hits_.instance[at] = place.instance;
   }
 
   const QueryContext* context_;

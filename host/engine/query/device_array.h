@@ -9,8 +9,8 @@
 #include <span>
 
 #include "base/memory.h"
+#include "device/opencl/buffers.h"
 #include "device/opencl/context.h"
-#include "device/opencl/host_memory.h"
 
 namespace kdray::query {
 

@@ -1,7 +1,8 @@
-// What    Of a program's rays of doubles, what floats leave undecided: all hits of those that begin so near
-//         to a surface that floats can't tell whether it lies ahead, t in double of all others, and closest
-//         hits whose t is none that the ray allows.
-// Shape   Rays of floats are none of its business. t is in the units of the caller's rays.
+// What    Decides exactly what floats leave open of a caller's rays of doubles in a scene of floats: all hits
+//         of rays that begin too near to a surface, t in double of the others, and closest hits whose t the
+//         ray doesn't allow.
+// Shape   Rays of floats don't come here, and a scene of doubles has double_scene.h. t is in the units of the
+//         caller's rays.
 // Threads As many calls at once as there are threads.
 #pragma once
 
@@ -47,7 +48,7 @@ class ExactRays {
   ExactRays(const QueryContext& context, const RayArrays& rays)
       : context_(&context), rays_(&rays), scene_(context.scene()) {}
 
-  // Of rays first and on: counts anew what those cross that begin near a surface.
+  // Counts anew, of rays first and on, what those cross that begin near a surface.
   void count(std::size_t first, std::span<std::uint32_t> counts, const std::optional<Cancel>& cancel) const;
 
   // All hits of rays first and on, from those that floats have found, which are named by reference.
@@ -58,7 +59,7 @@ class ExactRays {
   double distance(std::size_t i, std::uint32_t ref, std::uint32_t instance, float t) const;
 
   // The closest hit of ray i from the one that floats have found: with t in double; and found anew, by a walk
-  // on the host, where that t is none that the ray allows, or so near to the start that floats can't tell
+  // on the host, where the ray doesn't allow that t, or it is so near to the start that floats can't tell
   // what lies ahead. None: there is none.
   std::optional<ExactHit> closest(std::size_t i, const ExactHit& found) const;
 

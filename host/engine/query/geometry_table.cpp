@@ -24,14 +24,23 @@ const GeometryTable::Geometry& GeometryTable::holder(const std::vector<Geometry>
   return *(after - 1);
 }
 
-GeometryTable::Place GeometryTable::of(std::uint32_t number) const {
-  const Geometry& g = holder(geometries_, number);
-  return {g.id, number - g.first};
+std::uint32_t GeometryTable::copy_of(std::uint32_t number) const {
+  const auto after = std::ranges::upper_bound(copies_.first, number);
+  return static_cast<std::uint32_t>(after - copies_.first.begin() - 1);
 }
 
-GeometryTable::InstancePlace GeometryTable::of_instance(std::uint32_t instance) const {
-  const Geometry& g = holder(instances_, instance);
-  return {g.id, instance - g.first};
+GeometryTable::Place GeometryTable::of(std::uint32_t number, std::uint32_t instance) const {
+  const bool is_copy = is_copied(number);
+  if (is_copy) {
+    instance = copy_of(number);
+    number -= copies_.first[instance];
+  }
+  if (instance != kNoInstance) {
+    const Geometry& g = holder(instances_, instance);
+    return {g.id, number, instance - g.first, is_copy && copies_.is_mirrored[instance] != 0};
+  }
+  const Geometry& g = holder(geometries_, number);
+  return {g.id, number - g.first};
 }
 
 std::optional<GeometryId> GeometryTable::only() const {
@@ -47,9 +56,12 @@ std::vector<std::uint32_t> GeometryTable::masks(std::span<const std::uint32_t> i
     for (const std::uint32_t instance : instances) masks.push_back(holder(instances_, instance).mask);
   }
   const std::size_t first = masks.size();
-  masks.resize(first + next_);
+  masks.resize(first + (copies_.size() > 0 ? copies_.first.back() : next_));
   for (const Geometry& g : geometries_)
     std::fill_n(masks.begin() + static_cast<std::ptrdiff_t>(first + g.first), g.n, g.mask);
+  for (std::uint32_t i = 0; i < copies_.size(); ++i)
+    std::fill_n(masks.begin() + static_cast<std::ptrdiff_t>(first + copies_.first[i]),
+                copies_.first[i + 1] - copies_.first[i], mask_of_instance(i));
   return masks;
 }
 

@@ -18,7 +18,7 @@
 
 namespace kdray::query {
 
-// Where packed hits go: arrays that have room for them.
+// Where packed hits go: arrays that have space for them.
 struct HitArrays {
   float* t;
   std::uint32_t* primitive;
@@ -48,7 +48,7 @@ class HitLists {
   HitLists(const HitLists&) = delete;
   HitLists& operator=(const HitLists&) = delete;
 
-  // Makes room for so many rays at a time, and for so many hits of all of them. It never gets less.
+  // Makes space for so many rays at a time, and for so many hits of all of them. It never gets less.
   void reserve(std::size_t rays, std::size_t hits);
 
   // Waits for what may still be running; whether it can be used again.

@@ -11,7 +11,6 @@
 #include "engine/query/filter_rays.h"
 #include "engine/query/grains.h"
 #include "engine/query/near_rays.h"
-#include "engine/query/plain_floats.h"
 
 namespace kdray::query {
 

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -205,5 +206,13 @@ class LocalRays {
   std::uint64_t n_invalid_ = 0;
   std::optional<std::string> first_invalid_;
 };
+
+// The fast way for rays as nearly all are: floats, finite, with directions of ordinary length, not from too
+// far off. Same floats as LocalFrame::begin() gives.
+//
+// Fills out[0, n) with rays [first, first + n) in the scene's own space. False, and `out` has anything, where
+// one of them isn't such.
+bool fill_plain_floats(const RayArrays& rays, const LocalFrame& frame, std::size_t first, std::size_t n,
+                       layout::QueryRay* out);
 
 }  // namespace kdray::query

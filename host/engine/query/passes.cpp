@@ -11,10 +11,10 @@ using layout::QuerySpan;
 
 namespace {
 
-// Hits that there is room for in a launch: 8 MiB, which stay in a cache on their way to where they are
+// Hits that there is space for in a launch: 8 MiB, which stay in a cache on their way to where they are
 // packed; and more for a GPU, which wants a million rays at a time.
 constexpr std::size_t kLaunchHits = std::size_t{1} << 19, kGpuLaunchHits = std::size_t{1} << 23;
-// Of these a ray has room for so many in its first pass: more where more than one ray of sixteen had more.
+// Of these a ray has space for so many in its first pass: more where more than one ray of sixteen had more.
 constexpr std::uint32_t kLeastFirst = 8, kMostFirst = 64;
 // The same in later passes, which take the rays that have more.
 constexpr std::uint32_t kLeastLater = 64, kMostLater = 4096;

@@ -2,7 +2,7 @@
 //         are enough for nearly all rays, and further ones for the rays that have more.
 // Shape   begin() a call; for each chunk trace_first_pass(), then trace_further_passes(), and pack() of
 //         first_lists() for the hits of the first pass. Kernels and buffers serve the next call too
-//         (query_context.h).
+//         (queries.h).
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "engine/query/plain_floats.h"
+#include "engine/query/local_rays.h"
 
 #include <atomic>
 #include <cmath>

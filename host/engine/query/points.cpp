@@ -213,6 +213,7 @@ QueryReport closest_points(const QueryContext& context, const Points& points, co
   check_out(out.primitive.size(), n, "primitive");
   check_out(out.u.size(), n, "u");
   check_out(out.v.size(), n, "v");
+  check_out(out.instance.size(), n, "instance");
   return for_each_chunk(context, points, options, [&](const TakenPoints& chunk) {
     Nearest nearest(context, chunk.place, chunk.points, options.radius);
     const std::vector<ClosestPoint>& found = nearest.wait();
@@ -234,8 +235,9 @@ QueryReport closest_points(const QueryContext& context, const Points& points, co
       });
     fill(out.geometry, [&](const ClosestPoint& p) { return place_of(p).geometry; });
     fill(out.primitive, [&](const ClosestPoint& p) { return place_of(p).primitive; });
-    fill(out.u, [](const ClosestPoint& p) { return p.u; });
-    fill(out.v, [](const ClosestPoint& p) { return p.v; });
+    fill(out.u, [&](const ClosestPoint& p) { return place_of(p).is_mirrored ? p.v : p.u; });
+    fill(out.v, [&](const ClosestPoint& p) { return place_of(p).is_mirrored ? p.u : p.v; });
+    fill(out.instance, [&](const ClosestPoint& p) { return place_of(p).instance; });
   });
 }
 

@@ -19,7 +19,7 @@
 #include <optional>
 
 #include "base/timer.h"
-#include "engine/query/query_context.h"
+#include "engine/query/queries.h"
 #include "kdray/cancel.h"
 #include "kdray/query.h"
 

@@ -25,6 +25,13 @@ bool is_dense(const View& view) {
   return view.empty() || (view.template first_of<T>() != nullptr && view.stride() == sizeof(T));
 }
 
+// Whether u and v lie side by side, pair after pair.
+bool are_pairs(const HitsOut& out) {
+  const float* const u = out.u.first_of<float>();
+  return u != nullptr && out.v.first_of<float>() == u + 1 && out.u.stride() == 2 * sizeof(float) &&
+         out.v.stride() == 2 * sizeof(float);
+}
+
 using Lanes = float __attribute__((vector_size(16)));
 using Words = int __attribute__((vector_size(16)));
 
@@ -44,14 +51,15 @@ void put_four(T* to, std::size_t at, const V& four) {
 struct DenseColumns {
   float* t;
   std::uint32_t *geometry, *primitive;
-  float *u, *v;
+  float *u, *v, *uv;  // uv: both, pair after pair
 
   explicit DenseColumns(const HitsOut& out)
       : t(out.t.first_of<float>()),
         geometry(out.geometry.first_of<std::uint32_t>()),
         primitive(out.primitive.first_of<std::uint32_t>()),
-        u(out.u.first_of<float>()),
-        v(out.v.first_of<float>()) {}
+        u(are_pairs(out) ? nullptr : out.u.first_of<float>()),
+        v(are_pairs(out) ? nullptr : out.v.first_of<float>()),
+        uv(are_pairs(out) ? out.u.first_of<float>() : nullptr) {}
 
   // Four hits to the rows from `at` on; t in multiples of `unit`, hits all of one geometry.
   void put(std::size_t at, const QueryHit* hits, float unit, GeometryId id) const {
@@ -67,6 +75,8 @@ struct DenseColumns {
              numbers == -1 ? Words{} + static_cast<int>(kNoGeometry) : Words{} + static_cast<int>(id));
     put_four(u, at, __builtin_shufflevector(uv01, uv23, 0, 1, 4, 5));
     put_four(v, at, __builtin_shufflevector(uv01, uv23, 2, 3, 6, 7));
+    put_four(uv, 2 * at, __builtin_shufflevector(uv01, uv01, 0, 2, 1, 3));
+    put_four(uv, 2 * at + 4, __builtin_shufflevector(uv23, uv23, 0, 2, 1, 3));
   }
 };
 static_assert(kNoPrimitive == 0xffffffffu);
@@ -87,9 +97,9 @@ HitWriter::HitWriter(const QueryContext& context, const RayArrays& rays, const H
   if (rays.in_double()) exact_.emplace(context, rays);
   const double unit = context.frame.unit();
   dense_ = is_dense<float>(out.t) && is_dense<std::uint32_t>(out.geometry) &&
-           is_dense<std::uint32_t>(out.primitive) && is_dense<float>(out.u) && is_dense<float>(out.v) &&
-           context.table.only() && unit >= std::numeric_limits<float>::min() &&
-           unit <= std::numeric_limits<float>::max();
+           is_dense<std::uint32_t>(out.primitive) &&
+           ((is_dense<float>(out.u) && is_dense<float>(out.v)) || are_pairs(out)) && context.table.only() &&
+           unit >= std::numeric_limits<float>::min() && unit <= std::numeric_limits<float>::max();
 }
 
 void HitWriter::write(std::size_t first, std::size_t begin, std::size_t end, const FoundHits& found,
@@ -168,14 +178,6 @@ std::size_t HitWriter::write_dense(const Some& some) const {
   return i;
 }
 
-void HitWriter::write_instances(const Some& some, std::size_t from) const {
-  fill(out_.instance, some, from, [&](std::size_t i, const QueryHit& hit) {
-    const std::uint32_t index = missed(hit) ? kNoInstance : some.instance(i);
-    if (index == kNoInstance) return std::array{kNoInstance};
-    return std::array{context_->table.of_instance(context_->scene().flat.instances[index].number).instance};
-  });
-}
-
 template <class Column, class ValueOf>
 void HitWriter::fill(const Column& column, const Some& some, std::size_t from,
                      const ValueOf& value_of) const {
@@ -190,18 +192,18 @@ void HitWriter::fill(const Column& column, const Some& some, std::size_t from,
 void HitWriter::write_columns(const Some& some, std::size_t from) const {
   const auto place_of = [&](std::size_t i, const QueryHit& hit) {
     if (missed(hit)) return GeometryTable::Place{kNoGeometry, kNoPrimitive};
-    const auto number = static_cast<std::uint32_t>(hit.primitive);
     const std::uint32_t index = some.instance(i);
-    if (index == kNoInstance) return context_->table.of(number);
-    const std::uint32_t place = context_->scene().flat.instances[index].number;
-    return GeometryTable::Place{context_->table.of_instance(place).geometry, number};
+    return context_->table.of(
+        static_cast<std::uint32_t>(hit.primitive),
+        index == kNoInstance ? kNoInstance : context_->scene().flat.instances[index].number);
   };
   fill(out_.t, some, from, [&](std::size_t i, const auto& hit) { return std::array{some.t_of(i, hit)}; });
   fill(out_.geometry, some, from,
        [&](std::size_t i, const auto& hit) { return std::array{place_of(i, hit).geometry}; });
   fill(out_.primitive, some, from,
        [&](std::size_t i, const auto& hit) { return std::array{place_of(i, hit).primitive}; });
-  write_instances(some, from);
+  fill(out_.instance, some, from,
+       [&](std::size_t i, const auto& hit) { return std::array{place_of(i, hit).instance}; });
   fill(out_.u, some, from, [](std::size_t, const auto& hit) { return std::array{hit.u}; });
   fill(out_.v, some, from, [](std::size_t, const auto& hit) { return std::array{hit.v}; });
   fill(out_.point, some, 0,

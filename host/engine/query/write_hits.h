@@ -66,7 +66,6 @@ class HitWriter {
   void fill(const Column& column, const Some& some, std::size_t from, const ValueOf& value_of) const;
   dvec3 point_of(std::size_t ray, double t) const;
   dvec3 normal_of(const Some& some, std::size_t i, layout::QueryHit& hit) const;
-  void write_instances(const Some& some, std::size_t from) const;
 
   const QueryContext* context_;
   const RayArrays* rays_;

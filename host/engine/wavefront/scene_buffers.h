@@ -1,6 +1,6 @@
 // What    A flattened scene on the device; shared by all queues of a context, read only. Where the device
-//         works in the host's memory, the buffers are the arrays themselves; or they are room that scenes are
-//         copied to, one after the other.
+//         works in the host's memory, the buffers are the arrays themselves; or they are space that scenes
+//         are copied to, one after the other.
 // Shape   A buffer for each of KDRAY_SCENE_ARRAYS (kernels/layout/arguments.h), by the list's names.
 #pragma once
 
@@ -28,12 +28,12 @@ struct SceneBuffers {
   using Sizes = std::array<std::size_t, Slot::kArrays>;  // bytes
 
   SceneBuffers(const device::Context& context, const flatten::FlatScene& flat, const flatten::WideForm& wide);
-  // Room for arrays of these sizes.
+  // Space for arrays of these sizes.
   SceneBuffers(const device::Context& context, const Sizes& sizes);
 
   static Sizes sizes_of(const flatten::FlatScene& flat, const flatten::WideForm& wide);
 
-  // Copies a scene that there is room for, and waits for it.
+  // Copies a scene that there is space for, and waits for it.
   void copy(cl::CommandQueue& queue, const flatten::FlatScene& flat, const flatten::WideForm& wide);
 
   // The wide form's nodes compressed (layout/compressed.layout.h), for kernels that walk it with one ray to a

@@ -1,7 +1,8 @@
 // What    What the slices of a queue work in, on its device: the frame, the list of what there is to do, the
 //         slices themselves, the streams of their rays and the film. A Wavefront has one, and so has each of
 //         ODPRT's workers.
-// Shape   By the names of the kernels' arguments (kernels/layout/arguments.h).
+// Shape   By the names of the kernels' arguments (kernels/layout/arguments.h). The frame says how large the
+//         pool is: by Schedule::apply() (wavefront.cpp), in ODPRT by make_plan() (odprt/plan.cpp).
 // Errors  ErrorCode::out_of_memory, which says what there was no memory for.
 #pragma once
 

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "device/opencl/pinned.h"
+#include "device/opencl/read_back.h"
 #include "engine/wavefront/counters.h"
 #include "engine/wavefront/programs.h"
 #include "engine/wavefront/scene_buffers.h"

@@ -55,6 +55,12 @@ struct LoadOptions {
 // reference for float's rounding: slower, by the binary walk and PDPRT alone, on devices that have it.
 enum class Precision { float32, float64 };
 
+// What vertices are to queries. float64: they are as they were given, in doubles, which are kept beside the
+// floats of the scene, and answers are those of exact arithmetic (slower). For triangles alone; instances
+// become copies. Pictures are of the floats. automatic: float64 for triangles without instances of which
+// floats about the scene's centre lose a bit, else float32.
+enum class VertexPrecision { float32, float64, automatic };
+
 struct TreeOptions {
   BuildQuality quality = BuildQuality::balanced;
   int max_depth = -1;  // -1: 8 + 1.3*log2(N)
@@ -63,9 +69,7 @@ struct TreeOptions {
   // The most that the scene may take when it is traced; the tree gets coarser; 0: no limit.
   std::uint64_t memory_bytes = 0;
   bool binary_form = true;  // is made too; few options take it (takes_binary_form)
-  // float64: queries answer for the vertices as they were given, in doubles, which are kept beside the floats
-  // of the scene, as exact arithmetic does (slower). For triangles alone. Pictures are of the floats.
-  Precision geometry = Precision::float32;
+  VertexPrecision geometry = VertexPrecision::float32;
   bool operator==(const TreeOptions&) const = default;
 };
 

@@ -91,6 +91,7 @@ struct ClosestPointsOut {
   PointsOut point = {};
   WordsOut geometry = {}, primitive = {};  // as HitsOut
   ValuesOut u = {}, v = {};
+  WordsOut instance = {};  // as HitsOut
 };
 
 // Masks are for rays: points see every geometry.

@@ -52,6 +52,7 @@ struct CommitReport {
   // moved; false: it was built.
   bool refitted = false;
   double growth = 1;  // of what a ray is expected to cost, since the tree was built; above the limit: why
+  VertexPrecision geometry = VertexPrecision::float32;  // what was asked for; of automatic what came of it
 };
 
 struct Extent {

@@ -9,6 +9,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <string_view>
 #include <vector>
 
 #include "base/vec.h"
@@ -54,5 +56,14 @@ inline constexpr float kEveryQueue = -2;  // all of them hold what was hit
 
 // Returns red, green and blue as sRGB has them, 0 to 255.
 std::array<std::uint8_t, 3> queue_color(std::size_t queue);
+
+// Colours as the web writes them: the names of CSS, "#rgb" and "#rrggbb". The text is sRGB, as on a screen;
+// the result is linear. Source: CSS Color Module Level 4, "Named Colors".
+
+// Small and large letters are the same. Returns nothing for any other text, "transparent" among it.
+std::optional<vec3> css_color(std::string_view text);
+
+// The names, for suggestions.
+std::vector<std::string_view> css_names();
 
 }  // namespace kdray::image

@@ -7,7 +7,6 @@
 
 #include "base/error.h"
 #include "io/image/color.h"
-#include "io/image/flip.h"
 
 namespace kdray::image {
 namespace {

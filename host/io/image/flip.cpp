@@ -1,4 +1,4 @@
-#include "io/image/flip.h"
+#include "io/image/compare.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,6 @@
 // What    PNG to and from memory, through libpng.
-// Shape   PngPixels.samples: rows from the top, `channels` per pixel, each 0 .. 2^bits - 1.
+// Shape   PngPixels.samples: rows from the top, `channels` per pixel, each 0 .. 2^bits - 1. The callers
+//         choose PngMeta::color: for pictures encode_color() in picture_file.cpp.
 // Errors  encode_png: kdray::Error internal. decode_png: kdray::Error input, naming `file`.
 #pragma once
 

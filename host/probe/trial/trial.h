@@ -1,6 +1,6 @@
 // What    A trial: a driver is asked for its devices, a device takes the self-test, in a child process that
 //         may crash or hang without harm; and the program that the child is: kdray itself, whose first
-//         argument is then "--try" (request.h).
+//         argument is then "--try".
 // Shape   The child reports first that it has begun, then what came of it. What it leaves unsaid is read off
 //         its end.
 // Why     A program, and no fork() of this process: only its own copy of OpenCL's loader, with no thread that
@@ -9,9 +9,11 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "base/child.h"
@@ -63,5 +65,30 @@ class Trial {
 
 // Returns what a child's end means.
 Outcome outcome_of(Subject subject, const ChildEnd& end, double limit_seconds);
+
+// What the child of a trial does: `kdray --try driver|device|picture KEY PARENT`. The child reports in
+// lines on Child::kReport: that it has begun; then a word for the outcome and more text, or that there is
+// no verdict.
+constexpr const char* kTry = "--try";
+constexpr const char* kBegun = "begun 1";  // and the report's version
+constexpr const char* kPassed = "passed ";
+constexpr const char* kFailed = "failed ";
+constexpr const char* kNone = "none ";
+
+struct TrialRequest {
+  Subject subject;
+  std::string key;
+  int parent;
+};
+
+// Returns the trial that a program's arguments ask for; nothing where they ask for none.
+std::optional<TrialRequest> request_of(std::span<const char* const> arguments);
+
+// Returns what is wrong with the picture of the device of this number; empty: nothing.
+using TestPicture = std::function<std::string(int number)>;
+
+// Does the trial and ends the process, without a clean-up: the outcome is reported, and a driver might hang
+// in it.
+[[noreturn]] void try_it(const TrialRequest& request, const TestPicture& test_picture);
 
 }  // namespace kdray::trial

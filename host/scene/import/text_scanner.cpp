@@ -6,8 +6,6 @@
 #include <limits>
 #include <utility>
 
-#include "scene/import/plain_number.h"
-
 namespace kdray::scene {
 
 namespace {

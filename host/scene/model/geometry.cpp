@@ -246,13 +246,15 @@ Geometry make_geometry_in(const LocalSpace& space, const Scene& scene) {
 }
 
 Geometry make_geometry_for_doubles(const Scene& scene) {
-  if (!scene.instances.empty())
-    throw input_error(scene.name, 0, "instances, which a scene of doubles doesn't have",
-                      "give every mesh its own triangles, or ask about it in floats");
-  if (scene.primitive_count() != scene.triangles.size())
-    throw input_error(scene.name, 0, "primitives other than triangles, which a scene of doubles doesn't have",
-                      "leave them out, or ask about it in floats");
   return Maker(space_of(scene.bounds(), scene.name), scene, true).make();
+}
+
+bool fits_floats(const Scene& scene) {
+  const LocalSpace space = space_of(scene.bounds(), scene.name);
+  return std::ranges::all_of(scene.vertices, [&](const dvec3& v) {
+    const dvec3 local = space.local(v);
+    return dvec3(vec3(local)) == local;
+  });
 }
 
 DoubleTriangles make_double_triangles(const Scene& scene, const Geometry& geometry) {

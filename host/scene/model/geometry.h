@@ -59,11 +59,13 @@ struct Geometry {
 // The triangles of a scene that is asked about in doubles (TreeOptions::geometry), as the file or the caller
 // has them: in the scene's own space, where its floats are too, and exactly so. (The centre is 0, or within
 // twice of every coordinate, so that taking it from them rounds nothing.) Coordinates below kLeast are 0.
+// Instances are copies there: corners are where their transforms bring them in doubles.
 struct DoubleTriangles {
   static constexpr double kLeast = 0x1p-100;
 
   RawVector<dvec3> vertices;
   RawVector<std::array<std::uint32_t, 3>> corners;  // of each triangle of the Geometry
+  Copies copies;                                    // of its instances
 
   std::array<dvec3, 3> at(std::size_t triangle) const {
     const auto& [a, b, c] = corners[triangle];
@@ -75,9 +77,13 @@ struct DoubleTriangles {
 };
 DoubleTriangles make_double_triangles(const Scene& scene, const Geometry& geometry);
 
-// Makes the geometry of a scene that is asked about in doubles: a triangle whose corners differ in these is
-// kept though rounding makes two of them equal, and then no ray of floats meets it.
+// Makes the geometry of a scene of triangles alone, without instances, that is asked about in doubles: a
+// triangle whose corners differ in these is kept though rounding makes two of them equal, and then no ray of
+// floats meets it.
 Geometry make_geometry_for_doubles(const Scene& scene);
+
+// Returns whether floats about the scene's centre are its vertices to the bit.
+bool fits_floats(const Scene& scene);
 
 // Makes the geometry in `kept`, where the scene keeps_space(), or else in a space of its own.
 Geometry make_geometry(const Scene& scene, const std::optional<LocalSpace>& kept = {});

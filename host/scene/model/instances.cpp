@@ -141,7 +141,7 @@ void check_capacity(const Scene& mesh, const Scene& scene) {
       scene.vertices.size() + mesh.vertices.size() >= kNone ||
       scene.normals.size() + mesh.normals.size() >= kNone)
     throw input_error(scene.name, 0, "copies of its meshes make 2^28 primitives or more",
-                      "leave --instances flat out");
+                      "leave --instances flat out, or ask about it in floats");
 }
 
 dmat4 matrix_of(const Instance& instance) {
@@ -182,16 +182,21 @@ void add_copy(const Scene& mesh, const Instance& instance, Scene& scene) {
   });
 }
 
-void flatten_instances(Scene& scene) {
+Copies flatten_instances(Scene& scene) {
+  Copies copies;
   const auto instances = std::exchange(scene.instances, {});
   const auto meshes = std::exchange(scene.meshes, {});
   for (const Instance& instance : instances) {
+    copies.first.push_back(scene.primitive_count());
+    copies.is_mirrored.push_back(glm::determinant(instance.linear) < 0);
     try {
       add_copy(*meshes[instance.mesh], instance, scene);
     } catch (const std::domain_error& e) {
       throw input_error(scene.name, 0, std::string("an instance: ") + e.what(), "leave --instances flat out");
     }
   }
+  if (copies.size() > 0) copies.first.push_back(scene.primitive_count());
+  return copies;
 }
 
 Instancing::Instancing(Instances how) : outer_(std::exchange(wanted, how)) {}

@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "base/box.h"
 #include "base/vec.h"
@@ -56,9 +57,19 @@ bool worth_keeping(std::uint64_t primitives, std::uint64_t copies);
 // std::domain_error where shapes would no longer be shapes of their kind.
 void add_copy(const Scene& mesh, const Instance& instance, Scene& scene);
 
+// Where a scene's primitives are copies of its meshes: of each instance the number of its first, and one
+// behind the last; and of each whether it mirrors, so that triangles' second and third corners have changed
+// places. Empty where there are none.
+struct Copies {
+  std::vector<std::uint32_t> first;
+  std::vector<std::uint8_t> is_mirrored;
+
+  std::size_t size() const { return is_mirrored.size(); }
+};
+
 // Copies all instances into the scene's primitives, behind those that there are. Throws ErrorCode::input
 // where they become too many, or a sphere an ellipsoid.
-void flatten_instances(Scene& scene);
+Copies flatten_instances(Scene& scene);
 
 // While one lives, importers of its thread do as it says.
 class Instancing {

@@ -1,9 +1,9 @@
-// What    What rays that meet nothing see where the background is not one colour: colours by height, or a
-//         picture all around.
+// What    The background that rays see when they meet nothing, where it is not one colour: colours by height,
+//         or a picture all around.
 // Shape   A gradient's stops ascend; below the first and above the last their colours go on. A picture is
 //         equirectangular: its top row lies at `up`, its bottom row opposite, its middle column forward, and
-//         and what is right of it lies to the right of a viewer looking that way. Pictures are shared, and
-//         never changed.
+//         what is right of it lies to the right of a viewer looking that way. Pictures are shared, and never
+//         changed.
 // Units   Linear RGB; heights are sines of the angle above the horizon, from -1 to 1.
 // Errors  A file is read with kdray::Error, ErrorCode::input, in one line: another format, a damaged file,
 //         more texels than textures may have (picture.h), told by the header before much is allocated.

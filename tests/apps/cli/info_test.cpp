@@ -1,6 +1,7 @@
 // What    kdray info: the figures of a scene whose figures are known; without any device.
 #include <fmt/format.h>
 
+#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -83,6 +84,30 @@ TEST(InfoCommand, RunsOfNamesThatThereAreNotAreLeftOut) {
                    .instances = {{0, 0xffffffff}, {1, 0}}});
   const cli::Parts parts = cli::parts_report(scene, 12);
   EXPECT_EQ(parts.first, (cli::Json::array({{{"name", "lid"}, {"primitives", 2}}})));
+}
+
+// | `balls.nff` | 2 triangles, 820 spheres | 2 | 3 | (-12, -12, -0.5) to (12, 12, 0.821994) |
+TEST(InfoCommand, TellsWhatTheDataSheetOfTheScenesSays) {
+  const Folder folder;
+  const fs::path scenes = fs::path(KDRAY_SOURCE_DIR) / "scenes";
+  std::ifstream sheet(scenes / "README.md");
+  int n_scenes = 0;
+  for (std::string line; std::getline(sheet, line);) {
+    std::vector<std::string> cells;
+    for (std::size_t at = 0, end; (end = line.find(" | ", at)) != std::string::npos; at = end + 3)
+      cells.push_back(line.substr(at, end - at));
+    if (cells.size() != 4 || !cells[0].starts_with("| `")) continue;
+    const std::string bounds = line.substr(line.rfind(" | ") + 3, line.rfind(" |") - line.rfind(" | ") - 3);
+    const std::string told =
+        kdray({"info", scenes / cells[0].substr(3, cells[0].size() - 4)}, no_device(folder)).out;
+    SCOPED_TRACE(line + "\n" + told);
+    EXPECT_NE(told.find(": " + cells[1] + "\n"), std::string::npos);
+    EXPECT_NE(told.find("\nmaterials    " + cells[2] + "\n"), std::string::npos);
+    EXPECT_NE(told.find("\nlights       " + cells[3] + "\n"), std::string::npos);
+    EXPECT_NE(told.find("\nbounds       " + bounds + "\n"), std::string::npos);
+    ++n_scenes;
+  }
+  EXPECT_GE(n_scenes, 12);
 }
 
 TEST(InfoCommand, TheTreesFiguresAgreeWithEachOther) {

@@ -75,6 +75,7 @@ TEST(Questions, DoubleGeometryIsThatOfTheFile) {
   };
   EXPECT_EQ(hit_of("double").primitive / 2, 1);
   EXPECT_DOUBLE_EQ(hit_of("double").t, 5 - 0.3000000001);
+  EXPECT_EQ(hit_of("auto").t, hit_of("double").t);
   EXPECT_EQ(hit_of("float").primitive / 2, 0);
 }
 

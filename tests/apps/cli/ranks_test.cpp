@@ -18,7 +18,7 @@
 #include "apps/cli/running.h"
 #include "apps/cli/scenes.h"
 #include "cluster/partition/ply_files.h"
-#include "cluster/transport/launcher.h"
+#include "cluster/transport/mpi.h"
 #include "support/folder.h"
 #include "support/mpirun.h"
 

@@ -5,7 +5,6 @@
 #include <numbers>
 #include <vector>
 
-#include "apps/verify/duplicates.h"
 #include "apps/verify/edges.h"
 #include "apps/verify/mesh.h"
 #include "scene/model/geometry.h"

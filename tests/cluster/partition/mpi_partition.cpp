@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "cluster/partition/scene_partition.h"
-#include "cluster/transport/launcher.h"
 #include "cluster/transport/mpi.h"
 #include "scene/import/load.h"
 

@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "cluster/transport/in_process.h"
+#include "cluster/transport/simulated.h"
 #include "cluster/transport/together.h"
 
 namespace kdray::test {

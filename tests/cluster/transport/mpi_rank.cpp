@@ -6,7 +6,6 @@
 #include <thread>
 
 #include "cluster/transport/exercise.h"
-#include "cluster/transport/launcher.h"
 #include "cluster/transport/mpi.h"
 
 int main(int argc, char** argv) {

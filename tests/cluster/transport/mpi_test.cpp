@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <string>
 
-#include "cluster/transport/launcher.h"
+#include "cluster/transport/mpi.h"
 #include "support/mpirun.h"
 #include "support/variable.h"
 

@@ -9,7 +9,6 @@
 #include <tuple>
 
 #include "cluster/transport/exercise.h"
-#include "cluster/transport/in_process.h"
 #include "cluster/transport/simulated.h"
 #include "kdray/error.h"
 

@@ -1,5 +1,5 @@
 // What one frame leaves to the next: nothing but what it asks for, and no more than there is room for.
-#include "device/opencl/kept_buffers.h"
+#include "device/opencl/buffers.h"
 
 #include <gtest/gtest.h>
 

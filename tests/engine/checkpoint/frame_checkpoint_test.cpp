@@ -9,7 +9,7 @@
 #include <random>
 #include <thread>
 
-#include "engine/wavefront/curve.h"
+#include "engine/wavefront/tile_order.h"
 #include "support/errors.h"
 #include "support/folder.h"
 

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "base/timer.h"
-#include "engine/checkpoint/create_once.h"
 #include "support/folder.h"
 #include "support/patience.h"
 

@@ -7,7 +7,6 @@
 #include <random>
 
 #include "engine/checkpoint/record_file.h"
-#include "engine/checkpoint/tile_file.h"
 #include "support/folder.h"
 
 namespace kdray::checkpoint {

@@ -13,8 +13,8 @@
 #include <thread>
 #include <vector>
 
-#include "engine/wavefront/curve.h"
 #include "engine/wavefront/random_frame.h"
+#include "engine/wavefront/tile_order.h"
 #include "support/folder.h"
 
 namespace kdray::frame {

@@ -1,6 +1,6 @@
 // What    Subtrees assigned to parts: none lost, the largest part at most as large as the best of all ways to
 //         give each part one run of neighbours, bytes kept to; and several runs where one won't do.
-#include "engine/odprt/assign_balanced.h"
+#include "engine/odprt/assign.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,10 @@
 // Credits that go from rank to rank: there are never more nor fewer than there were, they go back to where
 // they came from, and a rank without any gets some.
-#include "engine/odprt/credit_debts.h"
+#include "engine/odprt/ray_credits.h"
 
 #include <gtest/gtest.h>
 
 #include <numeric>
-
-#include "engine/odprt/ray_credits.h"
 
 namespace kdray::odprt {
 namespace {

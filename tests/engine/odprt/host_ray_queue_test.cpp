@@ -1,5 +1,5 @@
 // What    HostRayQueue: rays come out as they were put in, by slice, and their number and depth are known.
-#include "engine/odprt/host_ray_queue.h"
+#include "engine/odprt/outbox.h"
 
 #include <gtest/gtest.h>
 

@@ -9,9 +9,9 @@
 
 #include "accel/flatten/instance_openings.h"
 #include "accel/prepare/prepared.h"
+#include "engine/odprt/assign.h"
 #include "engine/odprt/division.h"
-#include "engine/odprt/kinds.h"
-#include "engine/odprt/replicate.h"
+#include "engine/odprt/subtrees.h"
 #include "pictures/scenes.h"
 
 namespace kdray::test {

@@ -1,5 +1,5 @@
 // What    Which subtree a point lies in, against all subtrees in turn.
-#include "engine/odprt/locate.h"
+#include "engine/odprt/subtrees.h"
 
 #include <gtest/gtest.h>
 

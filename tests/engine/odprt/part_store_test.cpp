@@ -1,6 +1,6 @@
 // What    Parts that come and go: a device holds the one that was asked for, word for word, in buffers that
 //         are made once.
-#include "engine/odprt/part_store.h"
+#include "engine/odprt/worker_pool.h"
 
 #include <gtest/gtest.h>
 

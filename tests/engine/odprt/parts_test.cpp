@@ -1,9 +1,9 @@
 // What    The parts of a divided scene: together they hold every leaf of the whole, each once, with the same
 //         boxes and the same numbers in their blocks; primitives that lie in several parts are known to; the
 //         directory encloses what the parts hold.
-#include "engine/odprt/parts.h"
+#include "engine/odprt/division.h"
 
-#include "engine/odprt/kinds.h"
+#include "engine/odprt/subtrees.h"
 
 #include <gtest/gtest.h>
 
@@ -13,9 +13,8 @@
 #include <set>
 #include <tuple>
 
-#include "engine/odprt/division.h"
+#include "engine/odprt/assign.h"
 #include "engine/odprt/prepared_scenes.h"
-#include "engine/odprt/replicate.h"
 
 namespace kdray::test {
 namespace {

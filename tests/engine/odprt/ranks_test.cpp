@@ -7,7 +7,6 @@
 #include <numeric>
 #include <random>
 
-#include "cluster/transport/in_process.h"
 #include "cluster/transport/simulated.h"
 #include "engine/odprt/render.h"
 #include "engine/wavefront/hall_of_mirrors.h"

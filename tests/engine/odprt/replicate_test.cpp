@@ -1,6 +1,6 @@
 // What    Which subtrees every part holds: those with most visits for their bytes, within the bytes that
 //         there are.
-#include "engine/odprt/replicate.h"
+#include "engine/odprt/assign.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "base/hash.h"
-#include "cluster/transport/in_process.h"
+#include "cluster/transport/simulated.h"
 #include "engine/pdprt/render.h"
 #include "engine/wavefront/hall_of_mirrors.h"
 #include "kdray/error.h"

@@ -9,8 +9,8 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "engine/wavefront/curve.h"
 #include "engine/wavefront/hall_of_mirrors.h"
+#include "engine/wavefront/tile_order.h"
 #include "kdray/error.h"
 #include "layout/features.h"
 #include "support/device.h"

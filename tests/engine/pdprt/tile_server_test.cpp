@@ -17,7 +17,7 @@
 #include "cluster/transport/simulated.h"
 #include "engine/pdprt/tile_client.h"
 #include "engine/pdprt/tile_server.h"
-#include "engine/wavefront/curve.h"
+#include "engine/wavefront/tile_order.h"
 #include "support/errors.h"
 
 namespace kdray::pdprt {

@@ -1,5 +1,5 @@
 // Tiles get smaller for small pictures, many compute units, and where one tile was a large part of the work.
-#include "engine/pdprt/tile_size.h"
+#include "engine/pdprt/tiles.h"
 
 #include <gtest/gtest.h>
 

@@ -36,7 +36,7 @@ std::vector<Ray> rays_about(const QueriedScene& scene, std::size_t n) {
 }
 
 // Eye rays of a picture, sixteen of a square after the other: packets that share their way into the tree.
-std::vector<Ray> eye_rays(const dvec3& eye, const dvec3& at, double width) {
+std::vector<Ray> eye_rays(const dvec3& eye, const dvec3& at, double width, float t_min = 0) {
   constexpr int kSide = 64, kSquare = 4;
   const dvec3 ahead = glm::normalize(at - eye), right = glm::normalize(glm::cross(ahead, dvec3(0.1, 1, 0.2))),
               up = glm::cross(right, ahead);
@@ -46,7 +46,7 @@ std::vector<Ray> eye_rays(const dvec3& eye, const dvec3& at, double width) {
     const double x = square % of_row * kSquare + i % kSquare,
                  y = square / of_row * kSquare + i / kSquare % kSquare;
     const dvec3 d = ahead + width * ((x / kSide - 0.5) * right + (y / kSide - 0.5) * up);
-    rays.push_back(ray_from(vec3(eye), vec3(d), 0, std::numeric_limits<float>::infinity()));
+    rays.push_back(ray_from(vec3(eye), vec3(d), t_min, std::numeric_limits<float>::infinity()));
   }
   return rays;
 }
@@ -145,6 +145,29 @@ TEST_F(Walks, FindTheSameWherePacketsShareTheirWay) {
       }
     EXPECT_GT(n_hits, 3000);
   }
+}
+
+// A t_min just below 0 lets in what rays begin at, and packets are bounded all the same.
+TEST_F(Walks, FindTheSameWhereRaysBeginAtASurface) {
+  QueriedScene queried(stress::cube(), Space::worlds);
+  std::size_t n_at_start = 0;
+  for (const vec3 eye : {vec3(0.25f, 0.5f, 1), vec3(-1, 0.3f, 0), vec3(1, 1, 1), vec3(0, -1, 1)})
+    for (const float t_min : {-1e-30f, -1e-14f, -1e-8f, -0.5f, 1e-30f})
+      for (const double sign : {-1.0, 1.0}) {
+        const std::vector<Ray> rays =
+            eye_rays(dvec3(eye), dvec3(eye) * (1 + sign) + dvec3(0.1, 0.2, 0.3), 0.2, t_min);
+        query::Target target = queried.target();
+        target.traversal = Traversal::wide;
+        const std::vector<Hit> one_by_one = query::trace(target, rays, {}).hits;
+        target.traversal = Traversal::packet;
+        EXPECT_TRUE(same_bits(query::trace(target, rays, {}).hits, one_by_one)) << t_min;
+        const LocalHits all = queried.all(rays, {.traversal = Traversal::packet});
+        EXPECT_TRUE(same(all, queried.all(rays, {.traversal = Traversal::wide}))) << t_min;
+        if (t_min < 0 && t_min >= -1e-8f)
+          n_at_start += static_cast<std::size_t>(std::ranges::count_if(
+              one_by_one, [](const Hit& hit) { return hit.primitive >= 0 && hit.t == 0; }));
+      }
+  EXPECT_GT(n_at_start, 50000);
 }
 
 }  // namespace

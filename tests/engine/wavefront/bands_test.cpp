@@ -1,5 +1,5 @@
 // Bands cover the picture once, in order, and none takes more film than it may unless one row of tiles does.
-#include "engine/wavefront/bands.h"
+#include "engine/wavefront/tile_order.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The curve visits every tile of a rectangle once, going from neighbour to neighbour.
-#include "engine/wavefront/curve.h"
+#include "engine/wavefront/tile_order.h"
 
 #include <gtest/gtest.h>
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <vector>
 
-#include "engine/wavefront/curve.h"
 #include "engine/wavefront/develop.h"
 #include "engine/wavefront/random_frame.h"
+#include "engine/wavefront/tile_order.h"
 
 namespace kdray::wavefront {
 namespace {

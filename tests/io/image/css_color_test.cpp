@@ -1,5 +1,5 @@
 // What    Colours as the web writes them: names, three and six digits, and what is none of them.
-#include "io/image/css_color.h"
+#include "io/image/color.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // What    FLIP against values worked out by hand and against those of the authors' own program
 //         (flip-evaluator 1.7 from PyPI, 67 pixels per degree) on pictures given by formulas.
-#include "io/image/flip.h"
+#include "io/image/compare.h"
 
 #include <gtest/gtest.h>
 

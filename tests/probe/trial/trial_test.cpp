@@ -6,7 +6,6 @@
 
 #include <array>
 
-#include "probe/trial/request.h"
 #include "support/variable.h"
 
 namespace kdray::trial {

@@ -151,7 +151,7 @@ Plane best_plane(const BinCounts& counts, const BinGrid& grid, const Bounds& con
 // Counts the references that are on neither side of the plane.
 std::size_t n_straddling(std::span<const BoundedRef> refs, const Plane& plane);
 
-// Leaves the references' parts below the plane in front of `refs`, behind which there is room for one more,
+// Leaves the references' parts below the plane in front of `refs`, behind which there is space for one more,
 // and those above it in workspace.above.
 Divided divide(const scene::Geometry& geometry, const BuildConfig& config, std::span<BoundedRef> refs,
                const Plane& plane, Workspace& workspace);

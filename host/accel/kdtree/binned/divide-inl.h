@@ -140,7 +140,7 @@ HWY_ATTR inline std::size_t count_straddling(std::span<const BoundedRef> refs, c
   return n;
 }
 
-// Sorts references by side. `below` or `above` may be where the references are; each place has room for all
+// Sorts references by side. `below` or `above` may be where the references are; each place has space for all
 // and one more.
 HWY_ATTR inline Sorted sort_sides(const BoundedRef* refs, std::size_t n, const Plane& plane,
                                   BoundedRef* below, BoundedRef* above, BoundedRef* straddling) {

@@ -17,7 +17,7 @@ namespace kdray::kdtree::binned {
 
 inline constexpr std::size_t kTaskRefs = 16384;  // references to a task, and to a piece, at most
 
-// References of one cell that lie together, and their hull. There is room for one more than the piece can
+// References of one cell that lie together, and their hull. There is space for one more than the piece can
 // have, since partitions also write behind the last.
 struct Piece {
   BoundedRef* first = nullptr;
@@ -45,7 +45,7 @@ class PiecePool {
  public:
   explicit PiecePool(std::size_t n_refs) { add_chunk(n_refs); }
 
-  // Returns an empty piece with room for n references.
+  // Returns an empty piece with space for n references.
   Piece take(std::size_t n) {
     const std::lock_guard lock(mutex_);
     if (left_ < n + 1) add_chunk(std::max(n + 1, kChunk));

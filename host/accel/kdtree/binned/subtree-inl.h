@@ -106,7 +106,7 @@ class SubtreeBuilder {
     return static_cast<double>(sides.n_below + sides.n_above + 2 * n_straddling) <= budget;
   }
 
-  // The stack needs room behind the cell for all references that may go below the plane, and for one in each
+  // The stack needs space behind the cell for all references that may go below the plane, and for one in each
   // place that is written in vain.
   void ensure_capacity(std::size_t first, std::size_t n) {
     if (stack_.size() < first + 2 * n + 2) stack_.resize(2 * (first + 2 * n + 2));

@@ -7,7 +7,6 @@
 
 #include "accel/kdtree/build.h"
 #include "accel/kdtree/clip.h"
-#include "accel/kdtree/exact/split.h"
 #include "accel/kdtree/fragment.h"
 
 namespace kdray::kdtree {
@@ -26,7 +25,7 @@ Side side_of(const BoundedRef& r, const Split& split) {
 }
 
 // Hands a cell's references to the two children of a split; references that straddle the plane are clipped
-// into both. Appends to `below_refs`; what is above is kept at the front of `refs`, which has room since a
+// into both. Appends to `below_refs`; what is above is kept at the front of `refs`, which has space since a
 // reference has at most one part there. Returns the number above. Order is kept on both sides.
 std::size_t partition(const scene::Geometry& geometry, const BuildConfig& config, const Bounds& cell,
                       const Split& split, std::span<BoundedRef> refs, std::vector<BoundedRef>& below_refs) {

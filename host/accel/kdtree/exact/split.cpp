@@ -1,4 +1,4 @@
-#include "accel/kdtree/exact/split.h"
+#include "accel/kdtree/exact/exact.h"
 
 #include <algorithm>
 #include <array>

@@ -14,7 +14,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "accel/kdtree/exact/split.h"
+#include "accel/kdtree/exact/exact.h"
 
 namespace kdray::kdtree {
 

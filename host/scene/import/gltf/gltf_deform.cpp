@@ -1,4 +1,4 @@
-#include "scene/import/gltf/gltf_deform.h"
+#include "scene/import/gltf/gltf_pose.h"
 
 #include <fmt/format.h>
 

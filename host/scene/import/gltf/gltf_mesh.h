@@ -14,9 +14,9 @@
 #include <string>
 
 #include "base/vec.h"
-#include "scene/import/gltf/gltf_deform.h"
 #include "scene/import/gltf/gltf_document.h"
 #include "scene/import/gltf/gltf_materials.h"
+#include "scene/import/gltf/gltf_pose.h"
 #include "scene/model/scene.h"
 
 namespace kdray::scene::gltf {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "io/image/css_color.h"
+#include "io/image/color.h"
 #include "scene/import/text_scanner.h"
 
 namespace kdray::scene {

@@ -1,4 +1,4 @@
-#include "scene/import/obj/obj_materials.h"
+#include "scene/import/obj/mtl.h"
 
 #include <algorithm>
 #include <map>
@@ -6,7 +6,6 @@
 #include "base/error.h"
 #include "scene/import/files.h"
 #include "scene/import/materials.h"
-#include "scene/import/obj/mtl.h"
 #include "scene/import/text_scanner.h"
 #include "scene/textures/picture.h"
 

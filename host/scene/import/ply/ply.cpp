@@ -16,7 +16,6 @@
 #include "scene/import/files.h"
 #include "scene/import/load.h"
 #include "scene/import/materials.h"
-#include "scene/import/ply/ply_columns.h"
 #include "scene/import/ply/ply_header.h"
 #include "scene/import/ply/ply_mesh.h"
 #include "scene/import/ply/ply_source.h"

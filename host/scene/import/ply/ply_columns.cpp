@@ -1,4 +1,4 @@
-#include "scene/import/ply/ply_columns.h"
+#include "scene/import/ply/ply_header.h"
 
 #include <algorithm>
 #include <array>

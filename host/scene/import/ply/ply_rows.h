@@ -13,7 +13,6 @@
 #include <optional>
 
 #include "base/memory.h"
-#include "scene/import/ply/ply_columns.h"
 #include "scene/import/ply/ply_header.h"
 #include "scene/import/ply/ply_mesh.h"
 

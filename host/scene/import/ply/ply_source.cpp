@@ -5,7 +5,6 @@
 #include <type_traits>
 #include <utility>
 
-#include "scene/import/plain_number.h"
 #include "scene/import/text_scanner.h"
 
 namespace kdray::scene::ply {

@@ -16,7 +16,6 @@
 
 #include "base/error.h"
 #include "base/vec.h"
-#include "scene/import/ply/ply_columns.h"
 #include "scene/import/ply/ply_header.h"
 #include "scene/import/ply/ply_mesh.h"
 

@@ -1,5 +1,5 @@
 // The thesis' medians: planes where they say, trees as valid as any other.
-#include "accel/kdtree/exact/split.h"
+#include "accel/kdtree/exact/exact.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The builder's search for the best plane against the naive one: the same cost, and a plane that has it.
-#include "accel/kdtree/exact/split.h"
+#include "accel/kdtree/exact/exact.h"
 
 #include <gtest/gtest.h>
 
