@@ -1,4 +1,4 @@
-"""kdray: exact and fast ray queries over triangles, spheres, cones, discs and tori, and Whitted pictures.
+"""kdray: exact and fast ray queries over triangles and shapes (spheres, cones, tori and others), and Whitted pictures.
 
 >>> import kdray
 >>> scene = kdray.Scene()

@@ -78,7 +78,7 @@ class _Added:
 class Scene:
     """Geometries by id, and what can be asked of them.
 
-    ``Scene(device="auto")`` is empty; `kdray.load` reads a file. Add meshes, spheres, cones, discs and tori, in
+    ``Scene(device="auto")`` is empty; `kdray.load` reads a file. Add meshes, spheres, cones, discs, tori and capsules, in
     whatever units they are (float64 vertices keep what float32 would lose: the scene is moved to its own centre
     first), then ask. The first question after a change builds the tree; `commit` does so at a time of your choosing.
 
@@ -389,7 +389,7 @@ class Scene:
 
     @property
     def primitives(self) -> int:
-        """How many triangles, spheres, cones, discs and tori are enabled."""
+        """How many triangles and shapes are enabled."""
         return int(self._core.primitives())
 
     @property
