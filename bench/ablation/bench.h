@@ -6,7 +6,6 @@
 //         Pictures that differ where none may are counted, not thrown.
 #pragma once
 
-#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -14,8 +13,8 @@
 #include <vector>
 
 #include "bench/ablation/ablations.h"
-#include "bench/measure/json.h"
-#include "bench/measure/spread.h"
+#include "bench/measure/progress.h"
+#include "bench/measure/report.h"
 
 namespace kdray::bench {
 
@@ -46,8 +45,7 @@ struct AblationRun {
 };
 
 std::vector<AblationRun> bench_ablation(const AblationOptions& options,
-                                        const std::function<void(const AblationRun&)>& done,
-                                        const std::function<void(const std::string&)>& working);
+                                        const Progress<AblationRun>& progress);
 
 // Rows that claim to be exact and are not.
 std::size_t count_inexact(std::span<const AblationRun> runs);

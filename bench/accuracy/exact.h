@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/accuracy/reference.h"
+#include "bench/accuracy/shown.h"
 #include "scene/model/scene.h"
 
 namespace kdray::bench {

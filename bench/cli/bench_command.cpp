@@ -7,6 +7,7 @@
 
 #include "apps/cli/options.h"
 #include "apps/cli/output.h"
+#include "base/text.h"
 #include "base/write_file.h"
 #include "bench/embree/embree.h"
 #include "bench/measure/run_program.h"
@@ -101,6 +102,11 @@ void add_repeat_and_device(CLI::App& app, int& repeat, std::string& device) {
   add_int(app, "--repeat", fmt::format("Rounds to take the median of (default {})", repeat), 1, kRepeatMax,
           repeat);
   add_device_option(app, "The device, as for render (default: auto)", device);
+}
+
+void add_text_list(CLI::App& app, const std::string& name, const std::string& help,
+                   const std::function<void(const std::vector<std::string>&)>& take) {
+  add_text(app, name, "LIST", help, [take](const std::string& text) { take(split_list(text)); });
 }
 
 void add_report(CLI::App& app, std::string& report) {

@@ -1,11 +1,9 @@
-// What    The commands of `kdray bench`, one file each: cli/command.h says what a command is.
+// What    The commands of `kdray bench`: apps/cli/command.h says what a command is.
 #pragma once
 
 #include "apps/cli/command.h"
 
 namespace kdray::cli {
-
-Command add_bench(CLI::App& kdray);
 
 Command add_bench_rays(CLI::App& bench);
 Command add_bench_queries(CLI::App& bench);

@@ -55,7 +55,6 @@ void load_scenes(const Loader& from, Library& e) {
   from.required(e.release_scene, "ReleaseScene");
   from.required(e.set_scene_flags, "SetSceneFlags");
   from.required(e.set_scene_build_quality, "SetSceneBuildQuality");
-  from.required(e.attach_geometry, "AttachGeometry");
   from.required(e.attach_geometry_by_id, "AttachGeometryByID");
   from.required(e.commit_scene, "CommitScene");
 }
@@ -64,7 +63,6 @@ void load_geometries(const Loader& from, Library& e) {
   from.required(e.new_geometry, "NewGeometry");
   from.required(e.release_geometry, "ReleaseGeometry");
   from.required(e.commit_geometry, "CommitGeometry");
-  from.required(e.set_new_geometry_buffer, "SetNewGeometryBuffer");
   from.required(e.set_shared_geometry_buffer, "SetSharedGeometryBuffer");
   from.required(e.set_geometry_occluded_filter_function, "SetGeometryOccludedFilterFunction");
   from.required(e.set_geometry_instanced_scene, "SetGeometryInstancedScene");
@@ -92,9 +90,7 @@ Library load(void* handle, const std::string& file) {
   load_scenes(from, e);
   load_geometries(from, e);
   load_queries(from, e);
-  const Device device = open(e);
-  const auto version = e.get_device_property(device, DeviceProperty::version);
-  e.release_device(device);
+  const auto version = e.get_device_property(OpenDevice(e).get(), DeviceProperty::version);
   e.major = static_cast<int>(version / 10000);
   e.version = fmt::format("{}.{}.{}", e.major, version / 100 % 100, version % 100);
   if ((e.major != 3 && e.major != 4) || (e.major == 3 && e.intersect_nm == nullptr))
@@ -139,10 +135,9 @@ std::span<const Library> libraries() {
   return found;
 }
 
-Device open(const Library& library) {
-  const Device device = library.new_device("frequency_level=simd512");
-  if (device == nullptr) throw Error(ErrorCode::internal, "Embree gives no device");
-  return device;
+OpenDevice::OpenDevice(const Library& library)
+    : library_(library), device_(library.new_device("frequency_level=simd512")) {
+  if (device_ == nullptr) throw Error(ErrorCode::internal, "Embree gives no device");
 }
 
 }  // namespace kdray::bench::embree

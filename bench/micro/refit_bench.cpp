@@ -7,11 +7,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <ctime>
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
-#include "base/timer.h"
+#include "bench/measure/stopwatch.h"
 #include "kdray/kdray.h"
 #include "scene/generate/displaced_sphere.h"
 #include "scene/model/scene.h"
@@ -49,21 +48,13 @@ std::vector<double> bent(const std::vector<double>& from, double by, double degr
   return moved;
 }
 
-// Wall time, and the processor's of all threads, which tells more where others are at work.
 struct Seconds {
   std::vector<double> wall, processor;
-};
 
-class Stopwatch {
- public:
-  void add_to(Seconds& seconds) const {
-    seconds.wall.push_back(timer_.seconds());
-    seconds.processor.push_back(static_cast<double>(std::clock() - clock_) / CLOCKS_PER_SEC);
+  void add(const bench::Stopwatch& watch) {
+    wall.push_back(watch.wall());
+    processor.push_back(watch.cpu());
   }
-
- private:
-  Timer timer_;
-  std::clock_t clock_ = std::clock();
 };
 
 struct Side {
@@ -75,9 +66,9 @@ struct Side {
   void ask(const Rays& rays, Seconds& seconds) {
     t.resize(rays.origins.size());
     primitive.resize(t.size());
-    const Stopwatch watch;
+    const bench::Stopwatch watch;
     scene.closest(rays, {.t = t, .primitive = primitive});
-    watch.add_to(seconds);
+    seconds.add(watch);
   }
 };
 
@@ -131,10 +122,10 @@ int run(std::uint32_t n, int rounds, std::size_t n_rays, double by, double degre
   for (int round = -1; round < rounds; ++round) {
     const std::vector<double> moved = bent(mesh.vertices, by, degrees, 0.7 * round);
     for (Side* side : {&built, &refitted}) {
-      const Stopwatch watch;
+      const bench::Stopwatch watch;
       side->scene.update_vertices(0, moved);
       const CommitReport report = side->scene.commit({.refit_growth = side == &built ? 0.0 : 100.0});
-      watch.add_to(side->commit);
+      side->commit.add(watch);
       if (side == &refitted) growth = std::max(growth, report.growth);
     }
     if (round < 0) first = refitted.commit.wall.front();

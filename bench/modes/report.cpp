@@ -5,7 +5,6 @@
 #include <map>
 #include <set>
 
-#include "bench/measure/short_name.h"
 #include "bench/modes/bench.h"
 
 namespace kdray::bench {
@@ -22,10 +21,6 @@ std::string cell(const std::optional<double>& value, double factor, int decimals
 std::optional<double> median_of(const std::optional<Spread>& spread) {
   if (!spread) return std::nullopt;
   return spread->median;
-}
-
-Json json_of(const std::optional<double>& value) {
-  return value ? Json(*value) : Json();
 }
 
 std::string line_of(const ModesRun& run, const ModesRow& row) {
@@ -109,14 +104,14 @@ Json json_of(const ModesRun& run, const ModesRow& row) {
           {"failure", row.failure.empty() ? Json() : Json(row.failure)},
           {"seconds", row.rounds.empty() ? Json() : json_of(row.seconds)},
           {"rounds", row.rounds},
-          {"speed_up", json_of(run.speed_up(row))},
-          {"idle_share", row.idle_share ? json_of(*row.idle_share) : Json()},
-          {"busy_seconds", json_of(row.busy_seconds)},
-          {"rays_exchanged", json_of(row.rays_exchanged)},
-          {"bytes_exchanged", json_of(row.bytes_exchanged)},
-          {"geometry_bytes", json_of(row.geometry_bytes)},
-          {"geometry_share", json_of(row.geometry_share)},
-          {"work_bytes", json_of(row.work_bytes)},
+          {"speed_up", json_if(run.speed_up(row))},
+          {"idle_share", json_if(row.idle_share)},
+          {"busy_seconds", json_if(row.busy_seconds)},
+          {"rays_exchanged", json_if(row.rays_exchanged)},
+          {"bytes_exchanged", json_if(row.bytes_exchanged)},
+          {"geometry_bytes", json_if(row.geometry_bytes)},
+          {"geometry_share", json_if(row.geometry_share)},
+          {"work_bytes", json_if(row.work_bytes)},
           {"timeline", row.timeline.empty() ? Json() : Json::parse(row.timeline)},
           {"differing_pixels", row.differing_pixels}};
 }
@@ -134,48 +129,39 @@ Json json_of(const Prediction& p) {
     json["bytes_sent"] = p.bytes_sent;
     json["largest_geometry_share"] = p.largest_geometry;
   }
-  if (!p.exchange.empty()) {
-    const auto n = static_cast<std::size_t>(p.queues);
-    json["exchange_rays"] = Json::array();
-    for (std::size_t from = 0; from < n; ++from)
-      json["exchange_rays"].push_back(
-          std::vector<double>(p.exchange.begin() + static_cast<std::ptrdiff_t>(from * n),
-                              p.exchange.begin() + static_cast<std::ptrdiff_t>((from + 1) * n)));
-  }
   return json;
 }
 
 Json model_json(const ModesRun& run) {
   if (!run.model) return run.model_failure.empty() ? Json() : Json{{"failure", run.model_failure}};
   const Model& model = *run.model;
-  Json json = {{"simulation", true},
-               {"rays_per_sample", model.rays_per_sample},
-               {"tile", {model.tile_width, model.tile_height}},
-               {"tiles_over_sequential", model.tiles_over_sequential},
-               {"odprt_overhead", model.odprt_overhead},
-               {"odprt_overhead_measured", model.overhead_measured},
-               {"rays", Json::array()},
-               {"checks", Json::array()},
-               {"predictions", Json::array()}};
-  for (const SampledRays& r : model.rays)
-    json["rays"].push_back({{"kind", r.kind}, {"sampled", r.sampled}, {"measured", r.measured}});
-  for (const Check& c : checks_of(run))
-    json["checks"].push_back({{"scheme", c.scheme},
-                              {"queues", c.queues},
-                              {"what", c.what},
-                              {"predicted", c.predicted},
-                              {"measured", c.measured},
-                              {"error", c.error()}});
-  for (const Prediction& p : model.predictions) json["predictions"].push_back(json_of(p));
-  return json;
+  const auto rays = [](const SampledRays& r) -> Json {
+    return {{"kind", r.kind}, {"sampled", r.sampled}, {"measured", r.measured}};
+  };
+  const auto check = [](const Check& c) -> Json {
+    return {{"scheme", c.scheme},       {"queues", c.queues},     {"what", c.what},
+            {"predicted", c.predicted}, {"measured", c.measured}, {"error", c.error()}};
+  };
+  return {{"simulation", true},
+          {"rays_per_sample", model.rays_per_sample},
+          {"tile", {model.tile_width, model.tile_height}},
+          {"tiles_over_sequential", model.tiles_over_sequential},
+          {"odprt_overhead", model.odprt_overhead},
+          {"odprt_overhead_measured", model.overhead_measured},
+          {"rays", json_list(model.rays, rays)},
+          {"checks", json_list(checks_of(run), check)},
+          {"predictions", json_list(model.predictions, [](const Prediction& p) { return json_of(p); })}};
 }
 
 Json json_of(const ModesRun& run) {
-  Json json = {{"scene", run.scene},      {"device", run.device},           {"primitives", run.n_primitives},
-               {"cores", run.cores},      {"scene_bytes", run.scene_bytes}, {"rows", Json::array()},
-               {"model", model_json(run)}};
-  for (const ModesRow& row : run.rows) json["rows"].push_back(json_of(run, row));
-  return json;
+  return {{"scene", run.scene},
+          {"primitives", run.n_primitives},
+          {"cores", run.machine.cores},
+          {"device", run.machine.device},
+          {"vectors", run.machine.vectors},
+          {"scene_bytes", run.scene_bytes},
+          {"rows", json_list(run.rows, [&](const ModesRow& row) { return json_of(run, row); })},
+          {"model", model_json(run)}};
 }
 
 std::vector<int> queues_of(std::span<const ModesRun> runs) {
@@ -193,7 +179,7 @@ std::vector<Check> checks_of(const ModesRun& run) {
   for (const Prediction& p : run.model->predictions) {
     const ModesRow* const row = run.find(p.scheme, p.queues);
     if (row == nullptr) continue;
-    if (row->queues <= run.cores)
+    if (row->queues <= run.machine.cores)
       checks.push_back({p.scheme, "seconds", p.queues, p.seconds, row->seconds.median});
     if (p.rays_sent > 0 && row->rays_exchanged.value_or(0) > 0)
       checks.push_back({p.scheme, "rays sent", p.queues, p.rays_sent, *row->rays_exchanged});
@@ -203,9 +189,8 @@ std::vector<Check> checks_of(const ModesRun& run) {
 
 std::string table_of(const ModesRun& run, const ModesOptions& options) {
   std::string out = fmt::format(
-      "{}: {} primitives, {:.1f} MB, {} core{}\n  {:>6}  "
-      "{:<21}{:>9}{:>9}{:>9}{:>10}{:>8}{:>9}{:>9}{:>9}{:>9}\n",
-      short_name(run.scene), run.n_primitives, run.scene_bytes * 1e-6, run.cores, run.cores == 1 ? "" : "s",
+      "{}: {} primitives, {:.1f} MB, {}\n  {:>6}  {:<21}{:>9}{:>9}{:>9}{:>10}{:>8}{:>9}{:>9}{:>9}{:>9}\n",
+      short_name(run.scene), run.n_primitives, millions(run.scene_bytes), counted(run.machine.cores, "core"),
       "queues", "", "s", "least", "most", "speed-up", "idle %", "M rays", "MB", "geom. %", "work MB");
   bool shared = false;
   for (const ModesRow& row : run.rows) {

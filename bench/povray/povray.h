@@ -5,9 +5,11 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "base/temporary.h"
 #include "io/image/image.h"
 #include "scene/model/scene.h"
 
@@ -19,9 +21,6 @@ bool has_povray();
 class Povray {
  public:
   Povray(const scene::Scene& scene, int width, int height, int depth, double min_weight);
-  ~Povray();
-  Povray(const Povray&) = delete;
-  Povray& operator=(const Povray&) = delete;
 
   double trace_seconds(int threads) const;
 
@@ -35,6 +34,7 @@ class Povray {
  private:
   double run_with(int threads, const std::vector<std::string>& flags) const;
 
+  std::unique_ptr<Temporary> temporary_;
   std::filesystem::path folder_;
   int width_, height_;
 };

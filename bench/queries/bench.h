@@ -7,14 +7,13 @@
 // Errors  Those of scene::load and kdray/scene.h; ErrorCode::input for a scene without triangles.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "bench/measure/json.h"
-#include "bench/measure/spread.h"
+#include "bench/measure/progress.h"
+#include "bench/measure/report.h"
 #include "bench/race/asker.h"
 #include "kdray/options.h"
 
@@ -50,17 +49,13 @@ struct CellResult {
 struct QueriesRun {
   std::string scene;
   std::size_t n_triangles = 0;
-  int cores = 0;  // as used
-  std::string device, vectors;
+  Machine machine;
   double first_in_process = 0;            // seconds to commit for the first time, with programs to be had
   std::vector<SideResult> first_answers;  // from arrays
   std::vector<CellResult> cells;
 };
 
-// `done` hears of every run as soon as it has ended, `working` what is being measured.
-std::vector<QueriesRun> bench_queries(const QueriesOptions& options,
-                                      const std::function<void(const QueriesRun&)>& done,
-                                      const std::function<void(const std::string&)>& working);
+std::vector<QueriesRun> bench_queries(const QueriesOptions& options, const Progress<QueriesRun>& progress);
 
 // The results for people (a table) and for programs (JSON: docs/bench.md has its keys), in report.cpp.
 

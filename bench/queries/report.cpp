@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "bench/embree/embree.h"
-#include "bench/measure/short_name.h"
 
 namespace kdray::bench {
 
@@ -71,42 +70,32 @@ Json ratios_of(const std::vector<SideResult>& sides) {
 }
 
 Json json_of(const CellResult& c) {
-  Json json = {{"question", c.question},
-               {"set", c.set},
-               {"batch", c.batch},
-               {"calls", c.calls},
-               {"sides", Json::array()},
-               {"ratios", ratios_of(c.sides)},
-               {"on_device", c.on_device ? json_of(*c.on_device) : Json()}};
-  for (const SideResult& s : c.sides) json["sides"].push_back(json_of(s));
-  return json;
+  return {{"question", c.question},
+          {"set", c.set},
+          {"batch", c.batch},
+          {"calls", c.calls},
+          {"sides", json_list(c.sides, [](const SideResult& s) { return json_of(s); })},
+          {"ratios", ratios_of(c.sides)},
+          {"on_device", json_if(c.on_device)}};
 }
 
 Json json_of(const QueriesRun& run) {
-  Json json = {{"scene", run.scene},
-               {"triangles", run.n_triangles},
-               {"cores", run.cores},
-               {"device", run.device},
-               {"vectors", run.vectors},
-               {"first_in_process", run.first_in_process},
-               {"first_answers", Json::array()},
-               {"first_answer_ratios", ratios_of(run.first_answers)},
-               {"cells", Json::array()}};
-  for (const SideResult& s : run.first_answers) json["first_answers"].push_back(json_of(s));
-  for (const CellResult& c : run.cells) json["cells"].push_back(json_of(c));
-  return json;
-}
-
-bool has_embree(std::span<const QueriesRun> runs) {
-  return std::any_of(runs.begin(), runs.end(),
-                     [](const QueriesRun& run) { return find(run.first_answers, "robust") != nullptr; });
+  return {{"scene", run.scene},
+          {"triangles", run.n_triangles},
+          {"cores", run.machine.cores},
+          {"device", run.machine.device},
+          {"vectors", run.machine.vectors},
+          {"first_in_process", run.first_in_process},
+          {"first_answers", json_list(run.first_answers, [](const SideResult& s) { return json_of(s); })},
+          {"first_answer_ratios", ratios_of(run.first_answers)},
+          {"cells", json_list(run.cells, [](const CellResult& c) { return json_of(c); })}};
 }
 
 }  // namespace
 
 std::string table_of(const QueriesRun& run) {
-  std::string out = fmt::format("{}: {} triangles, {} core{} of {}\n", short_name(run.scene), run.n_triangles,
-                                run.cores, run.cores == 1 ? "" : "s", run.device);
+  std::string out = fmt::format("{}: {} triangles, {} of {}\n", short_name(run.scene), run.n_triangles,
+                                counted(run.machine.cores, "core"), run.machine.device);
   out += fmt::format("  from arrays to the first answer, s:");
   for (const SideResult& s : run.first_answers) out += fmt::format(" {} {:.3f}", s.side, s.wall.median);
   out += fmt::format("; the first in this process {:.3f}\n", run.first_in_process);
@@ -119,13 +108,11 @@ std::string table_of(const QueriesRun& run) {
 }
 
 Json json_of(std::span<const QueriesRun> runs, const QueriesOptions& options) {
-  Json json = {{"command", "bench queries"},
-               {"embree", has_embree(runs) ? Json(embree_versions()) : Json()},
-               {"rays", options.rays},
-               {"repeat", options.repeat},
-               {"runs", Json::array()}};
-  for (const QueriesRun& run : runs) json["runs"].push_back(json_of(run));
-  return json;
+  return {{"command", "bench queries"},
+          {"embree", embree_json(options.embree)},
+          {"rays", options.rays},
+          {"repeat", options.repeat},
+          {"runs", json_list(runs, [](const QueriesRun& run) { return json_of(run); })}};
 }
 
 }  // namespace kdray::bench

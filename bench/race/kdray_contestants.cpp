@@ -1,8 +1,8 @@
 #include "bench/race/kdray_contestants.h"
 
 #include <array>
-#include <nlohmann/json.hpp>
 
+#include "api/names.h"
 #include "base/error.h"
 
 namespace kdray::bench {
@@ -10,15 +10,6 @@ namespace kdray::bench {
 namespace {
 
 constexpr std::array<std::string_view, 5> kNames = {"binary", "wide", "packet", "batch", "auto"};
-constexpr std::array<Traversal, 5> kTraversals = {Traversal::binary, Traversal::wide, Traversal::packet,
-                                                  Traversal::batch, Traversal::automatic};
-
-Traced trace(Renderer& renderer, const RayClass& c, Traversal traversal) {
-  Traced traced;
-  traced.hits = renderer.trace(c.rays, c.any_hit, 1, traversal);
-  traced.seconds = renderer.statistics().seconds.trace;
-  return traced;
-}
 
 }  // namespace
 
@@ -27,15 +18,18 @@ std::span<const std::string_view> traversal_names() {
 }
 
 Traversal traversal_of(std::string_view name) {
-  for (std::size_t i = 0; i < kNames.size(); ++i)
-    if (kNames[i] == name) return kTraversals[i];
+  for (const Traversal t :
+       {Traversal::binary, Traversal::wide, Traversal::packet, Traversal::batch, Traversal::automatic})
+    if (api::name_of(t) == name) return t;
   throw Error(ErrorCode::usage, "there is no traversal '" + std::string(name) + "'");
 }
 
 Contestant kdray_contestant(const std::shared_ptr<Renderer>& renderer, const std::string& traversal) {
-  return {Family::kdray, traversal, {{"", [renderer, t = traversal_of(traversal)](const RayClass& c) {
-                                        return trace(*renderer, c, t);
-                                      }}}};
+  const auto trace = [renderer, t = traversal_of(traversal)](const RayClass& c) {
+    std::vector<Hit> hits = renderer->trace(c.rays, c.any_hit, 1, t);
+    return Traced{renderer->statistics().seconds.trace, std::move(hits)};
+  };
+  return {Family::kdray, traversal, {{"", trace}}};
 }
 
 }  // namespace kdray::bench

@@ -7,7 +7,7 @@
 #include <span>
 #include <string_view>
 
-#include "bench/race/contestant.h"
+#include "bench/race/race.h"
 
 namespace kdray::bench {
 

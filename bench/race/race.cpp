@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "bench/race/compare_hits.h"
+#include "bench/race/compare.h"
 
 namespace kdray::bench {
 
@@ -50,6 +50,19 @@ const Outcome* fastest(std::span<const Outcome> outcomes, Accept&& accept) {
 }
 
 }  // namespace
+
+const char* name_of(Family family) {
+  return family == Family::kdray ? "kdray" : family == Family::embree_fast ? "Embree fast" : "Embree robust";
+}
+
+Json json_of(const Outcome& o, std::size_t n_rays) {
+  Json json = {{"flag", o.variant},
+               {"seconds", json_of(o.seconds)},
+               {"mrays_per_s", json_of(mrays_per_s(n_rays, o.seconds))},
+               {"differing_share", o.differing_share}};
+  if (o.family == Family::kdray) json["not_identical"] = o.n_not_identical;
+  return json;
+}
 
 std::vector<Outcome> race(const RayClass& rays, std::span<const Hit> reference,
                           const std::vector<Contestant>& contestants, int rounds) {

@@ -79,7 +79,6 @@ std::vector<QuerySet> make_sets(const scene::Scene& scene, std::span<const std::
   std::vector<std::string> classes;
   for (const SetKind& s : kSets)
     if (std::find(names.begin(), names.end(), s.set) != names.end()) classes.emplace_back(s.rays);
-  const int side = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(n))));
   // The tracer numbers triangles as they lie in the mesh.
   const Tracer by_number = [&](std::span<const Ray> rays) {
     std::vector<Hit> hits = trace(rays);
@@ -91,7 +90,7 @@ std::vector<QuerySet> make_sets(const scene::Scene& scene, std::span<const std::
   };
   const auto width = static_cast<float>(glm::length(scene.bounds().extent()));
   std::vector<QuerySet> sets;
-  for (const RayClass& c : make_classes(scene, classes, side, by_number)) {
+  for (const RayClass& c : make_classes(scene, classes, side_of(static_cast<int>(n)), by_number)) {
     if (c.rays.empty()) continue;
     sets.push_back(set_of(c, n));
     if (c.name == "primary") move_half_way(trace, width, sets.back());

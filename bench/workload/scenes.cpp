@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "base/error.h"
-#include "bench/workload/meadow.h"
 #include "scene/generate/built_in.h"
 #include "scene/generate/displaced_sphere.h"
 #include "scene/import/load.h"
