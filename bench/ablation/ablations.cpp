@@ -1,6 +1,6 @@
-#include "bench/ablation/ablations.h"
-
+// What    All that `kdray bench ablation` can take away.
 #include "accel/flatten/features.h"
+#include "bench/ablation/bench.h"
 #include "layout/features.h"
 
 namespace kdray::bench {

@@ -146,10 +146,7 @@ class AblationScene {
 
 std::vector<AblationRun> bench_ablation(const AblationOptions& options,
                                         const Progress<AblationRun>& progress) {
-  return run_each(options.scenes, progress, [&](const std::string& name) {
-    progress.working(name);
-    return AblationScene(options, name).run();
-  });
+  return run_scenes<AblationScene>(options, progress);
 }
 
 std::size_t count_inexact(std::span<const AblationRun> runs) {

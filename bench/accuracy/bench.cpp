@@ -7,7 +7,6 @@
 #include "bench/accuracy/answers.h"
 #include "bench/accuracy/exact.h"
 #include "bench/accuracy/povray.h"
-#include "bench/povray/pov_writer.h"
 #include "bench/povray/povray.h"
 #include "bench/workload/scenes.h"
 

@@ -178,10 +178,6 @@ Reference exact_reference(int width, int height) {
 
 }  // namespace
 
-std::vector<std::string> exact_scene_names() {
-  return {kChessboard, kPenumbra};
-}
-
 std::optional<ExactScene> exact_scene(const std::string& name) {
   if (name == kChessboard) return ExactScene{chessboard(), exact_reference<mean_chessboard, 512>};
   if (name == kPenumbra) return ExactScene{penumbra(), exact_reference<mean_penumbra, 8>};

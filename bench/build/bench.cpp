@@ -6,7 +6,6 @@
 #include <memory>
 
 #include "bench/embree/embree.h"
-#include "bench/race/kdray_contestants.h"
 #include "bench/race/race.h"
 
 namespace kdray::bench {

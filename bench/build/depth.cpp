@@ -118,10 +118,7 @@ std::vector<int> depths_to_try(int usual) {
 }
 
 std::vector<DepthRun> bench_depth(const DepthOptions& options, const Progress<DepthRun>& progress) {
-  return run_each(options.scenes, progress, [&](const std::string& name) {
-    progress.working(name);
-    return DepthScene(options, name).run();
-  });
+  return run_scenes<DepthScene>(options, progress);
 }
 
 std::size_t count_not_identical(std::span<const DepthRun> runs) {

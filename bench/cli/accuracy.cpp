@@ -4,13 +4,11 @@
 //         stopped keeps the scenes before.
 #include <fmt/format.h>
 
-#include "apps/cli/options.h"
 #include "apps/cli/output.h"
 #include "bench/accuracy/bench.h"
 #include "bench/accuracy/exact.h"
 #include "bench/accuracy/shown.h"
 #include "bench/cli/bench_command.h"
-#include "bench/cli/commands.h"
 #include "bench/povray/povray.h"
 #include "io/image/picture_file.h"
 
@@ -24,21 +22,11 @@ constexpr const char* kName = "accuracy";
 
 using AccuracyCommand = BenchCommand<bench::AccuracyOptions>;
 
-void prepare_pictures(const std::string& report) {
-  if (report.empty()) return;
-  const std::filesystem::path folder = std::filesystem::path(report) / kName;
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error)
-    throw input_error(folder.string(), 0, "can't be made a folder: " + error.message(),
-                      "choose another --report");
-}
-
 int run(const AccuracyCommand& c) {
   for (const std::string& name : c.options.scenes)
     if (!bench::exact_scene(name)) require_scenes({name});
   prepare_report(c.report, kName);
-  prepare_pictures(c.report);
+  if (!c.report.empty()) make_folder(std::filesystem::path(c.report) / kName);
   if (c.options.povray && !bench::has_povray()) say("povray is not installed: its points are left out");
   const bench::AccuracyCalls calls = {
       .done =

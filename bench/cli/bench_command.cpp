@@ -5,9 +5,7 @@
 
 #include <cstdio>
 
-#include "apps/cli/options.h"
 #include "apps/cli/output.h"
-#include "base/text.h"
 #include "base/write_file.h"
 #include "bench/embree/embree.h"
 #include "bench/measure/run_program.h"
@@ -35,12 +33,17 @@ void draw(const std::string& report) {
 
 }  // namespace
 
-void prepare_report(const std::string& folder, const std::string& name) {
-  if (folder.empty()) return;
+void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error)
-    throw input_error(folder, 0, "can't be made a folder: " + error.message(), "choose another --report");
+    throw input_error(folder.string(), 0, "can't be made a folder: " + error.message(),
+                      "choose another --report");
+}
+
+void prepare_report(const std::string& folder, const std::string& name) {
+  if (folder.empty()) return;
+  make_folder(folder);
   for (const char* const ending : {".json", ".svg"})
     check_writable(std::filesystem::path(folder) / (name + ending));
 }
@@ -102,11 +105,6 @@ void add_repeat_and_device(CLI::App& app, int& repeat, std::string& device) {
   add_int(app, "--repeat", fmt::format("Rounds to take the median of (default {})", repeat), 1, kRepeatMax,
           repeat);
   add_device_option(app, "The device, as for render (default: auto)", device);
-}
-
-void add_text_list(CLI::App& app, const std::string& name, const std::string& help,
-                   const std::function<void(const std::vector<std::string>&)>& take) {
-  add_text(app, name, "LIST", help, [take](const std::string& text) { take(split_list(text)); });
 }
 
 void add_report(CLI::App& app, std::string& report) {

@@ -1,22 +1,33 @@
-// What    What every `kdray bench` command does: its options, tables to stderr, each as soon as a scene is
-//         done, and with --report DIR the figures in DIR/<name>.json and a plot beside them, which the script
-//         kdray-bench-plot beside the program draws (bench/plot).
+// What    The commands of `kdray bench` (apps/cli/command.h), and what every one does: its options, tables to
+//         stderr, each as soon as a scene is done, and with --report DIR the figures in DIR/<name>.json and a
+//         plot beside them, which the script kdray-bench-plot beside the program draws (bench/plot).
 // Errors  ErrorCode::input for a folder that can't be made or written, before anything is measured. What has
 //         to be 0 and isn't: exit code 1, after everything has been written.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <cstddef>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "apps/cli/command.h"
+#include "apps/cli/options.h"
+#include "base/text.h"
 #include "bench/measure/progress.h"
 #include "bench/measure/report.h"
 
 namespace kdray::cli {
+
+Command add_bench_rays(CLI::App& bench);
+Command add_bench_queries(CLI::App& bench);
+Command add_bench_frames(CLI::App& bench);
+Command add_bench_build(CLI::App& bench);
+Command add_bench_depth(CLI::App& bench);
+Command add_bench_modes(CLI::App& bench);
+Command add_bench_accuracy(CLI::App& bench);
+Command add_bench_ablation(CLI::App& bench);
+Command add_bench_instances(CLI::App& bench);
 
 // The most that options may ask for.
 inline constexpr int kRaysMax = 1 << 26;  // of a class
@@ -41,16 +52,14 @@ void add_picture_size(CLI::App& app, long long pixels_max, int& width, int& heig
 void add_no_embree(CLI::App& app, bool& embree);
 void add_repeat_and_device(CLI::App& app, int& repeat, std::string& device);
 void add_report(CLI::App& app, std::string& report);
-void add_text_list(CLI::App& app, const std::string& name, const std::string& help,
-                   const std::function<void(const std::vector<std::string>&)>& take);
 
 // A list of values with commas between, each read by parse(name, text).
 template <class T, class Parse>
 void add_values(CLI::App& app, const std::string& name, const std::string& help, std::vector<T>& values,
                 const Parse& parse) {
-  add_text_list(app, name, help, [&values, name, parse](const std::vector<std::string>& texts) {
+  add_text(app, name, "LIST", help, [&values, name, parse](const std::string& text) {
     values.clear();
-    for (const std::string& text : texts) values.push_back(parse(name, text));
+    for (const std::string& part : split_list(text)) values.push_back(parse(name, part));
   });
 }
 
@@ -70,6 +79,7 @@ Command add_command(CLI::App& bench, const std::string& name, const std::string&
 
 // Throws for a name that is neither a file's nor a built-in scene's: before the first scene is measured.
 void require_scenes(const std::vector<std::string>& scenes);
+void make_folder(const std::filesystem::path& folder);
 // A folder for the report, made before anything is measured; nothing where there is to be none.
 void prepare_report(const std::string& folder, const std::string& name);
 // Where no plot can be drawn, a line says why; the figures are there all the same.

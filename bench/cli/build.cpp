@@ -1,11 +1,9 @@
 // What    The commands that build trees. bench build: what they cost to build and what they gain, over
 //         scenes, over sizes, over hostile meshes. bench depth: what trees of every maximum depth cost to
 //         build, to hold and to trace.
-#include "apps/cli/options.h"
 #include "apps/cli/output.h"
 #include "bench/build/bench.h"
 #include "bench/cli/bench_command.h"
-#include "bench/cli/commands.h"
 #include "scene/generate/hostile_meshes.h"
 
 namespace kdray::cli {

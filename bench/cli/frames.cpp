@@ -1,10 +1,8 @@
 // What    The commands that render whole frames. bench frames: with the time of each stage, beside Embree's
 //         and POV-Ray's. bench ablation: what each specialisation and each rule of skipping is worth.
-#include "apps/cli/options.h"
 #include "apps/cli/output.h"
 #include "bench/ablation/bench.h"
 #include "bench/cli/bench_command.h"
-#include "bench/cli/commands.h"
 #include "bench/frames/bench.h"
 #include "bench/povray/povray.h"
 

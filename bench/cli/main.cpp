@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/cli/help.h"
-#include "bench/cli/commands.h"
+#include "bench/cli/bench_command.h"
 #include "kdray/error.h"
 
 namespace {

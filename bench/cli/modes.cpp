@@ -3,10 +3,8 @@
 // Errors  A mode that fails is told.
 #include <algorithm>
 
-#include "apps/cli/options.h"
 #include "apps/cli/output.h"
 #include "bench/cli/bench_command.h"
-#include "bench/cli/commands.h"
 #include "bench/modes/bench.h"
 #include "bench/ranks/bench.h"
 #include "cluster/transport/launcher.h"

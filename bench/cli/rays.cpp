@@ -5,13 +5,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "apps/cli/options.h"
 #include "apps/cli/output.h"
 #include "bench/cli/bench_command.h"
-#include "bench/cli/commands.h"
 #include "bench/instances/bench.h"
 #include "bench/queries/bench.h"
-#include "bench/race/kdray_contestants.h"
+#include "bench/race/race.h"
 #include "bench/rays/bench.h"
 #include "bench/workload/scenes.h"
 
@@ -25,13 +23,9 @@ using QueriesCommand = BenchCommand<bench::QueriesOptions>;
 
 // ---- bench rays
 
-void say_missing_data() {
-  if (const auto missing = bench::data_scenes().missing; !missing.empty())
-    say(fmt::format("left out, since KDRAY_DATA names no folder that has them: {}", fmt::join(missing, " ")));
-}
-
 int run_rays(const RaysCommand& c) {
-  if (c.options.scenes.empty()) say_missing_data();
+  if (const auto missing = bench::data_scenes().missing; c.options.scenes.empty() && !missing.empty())
+    say(fmt::format("left out, since KDRAY_DATA names no folder that has them: {}", fmt::join(missing, " ")));
   require_scenes(c.options.scenes);
   const auto runs = run_bench("rays", c.options, c.report, bench::bench_rays);
   require_none(bench::count_not_identical(runs),

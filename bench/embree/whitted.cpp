@@ -1,4 +1,4 @@
-#include "bench/embree/whitted.h"
+// What    Whole frames by Embree (embree.h).
 
 #include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "base/timer.h"
+#include "bench/embree/embree.h"
 #include "bench/embree/packets.h"
 #include "bench/embree/scenes.h"
 #include "bench/embree/workers.h"

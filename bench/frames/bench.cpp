@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "bench/embree/whitted.h"
+#include "bench/embree/embree.h"
 #include "bench/povray/povray.h"
 #include "bench/workload/scenes.h"
 #include "kdray/kdray.h"
@@ -122,10 +122,7 @@ const EmbreeFrame* FrameResult::fastest_embree() const {
 }
 
 std::vector<FrameResult> bench_frames(const FramesOptions& options, const Progress<FrameResult>& progress) {
-  return run_each(options.scenes, progress, [&](const std::string& name) {
-    progress.working(name);
-    return FrameBench(options, name).run();
-  });
+  return run_scenes<FrameBench>(options, progress);
 }
 
 }  // namespace kdray::bench

@@ -1,5 +1,5 @@
 // What    `kdray bench frames`: whole frames, scene by scene, with the time of each stage; beside them, of
-//         NFF scenes, the same picture by POV-Ray and by a renderer on Embree (bench/embree/whitted.h).
+//         NFF scenes, the same picture by POV-Ray and by a renderer on Embree (bench/embree/whitted.cpp).
 // Shape   Interleaved: a round is a frame of kdray's, one by each Embree, a picture of POV-Ray's (in the
 //         first three rounds, since it takes so much longer). One of each before that is not counted.
 #pragma once

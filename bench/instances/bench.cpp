@@ -6,7 +6,7 @@
 
 #include "bench/embree/embree.h"
 #include "bench/race/compare.h"
-#include "bench/race/kdray_contestants.h"
+#include "bench/race/race.h"
 #include "bench/workload/scenes.h"
 #include "scene/generate/built_in.h"
 #include "scene/generate/displaced_sphere.h"

@@ -26,6 +26,15 @@ std::vector<Run> run_each(const Items& items, const Progress<Run>& progress, con
   return runs;
 }
 
+// Returns Bench(options, scene).run() of each of its scenes, told of before.
+template <class Bench, class Run, class Options>
+std::vector<Run> run_scenes(const Options& options, const Progress<Run>& progress) {
+  return run_each(options.scenes, progress, [&](const std::string& scene) {
+    progress.working(scene);
+    return Bench(options, scene).run();
+  });
+}
+
 // Returns the sum of count(run) over all runs: of what has to be 0.
 template <class Runs, class Count>
 std::size_t count_over(const Runs& runs, const Count& count) {

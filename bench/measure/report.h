@@ -53,6 +53,9 @@ double millions(Number n) {
   return 1e-6 * static_cast<double>(n);
 }
 
+// A column of a table; "-" where there is nothing to tell.
+std::string cell(const std::optional<double>& value, int width, int digits);
+
 struct Machine {
   int cores = 1;  // kdray's on a CPU, and as many threads for those beside it
   std::string device = {}, vectors = {};

@@ -1,5 +1,7 @@
 #include "bench/measure/spread.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numeric>
 #include <thread>
@@ -22,6 +24,10 @@ double sum(const std::vector<double>& values) {
 Spread mrays_per_s(std::size_t n_rays, const Spread& seconds) {
   const auto rate = [&](double s) { return s > 0 ? static_cast<double>(n_rays) / s * 1e-6 : 0.0; };
   return {rate(seconds.median), rate(seconds.max), rate(seconds.min)};
+}
+
+std::string cell(const std::optional<double>& value, int width, int digits) {
+  return value ? fmt::format("{:>{}.{}f}", *value, width, digits) : fmt::format("{:>{}}", "-", width);
 }
 
 std::map<std::string, std::uint64_t> rays_by_kind(const Statistics& statistics) {

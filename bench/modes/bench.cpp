@@ -209,10 +209,7 @@ std::optional<double> ModesRun::speed_up(const ModesRow& row) const {
 }
 
 std::vector<ModesRun> bench_modes(const ModesOptions& options, const Progress<ModesRun>& progress) {
-  return run_each(options.scenes, progress, [&](const std::string& name) {
-    progress.working(name);
-    return ModesScene(options, name).run();
-  });
+  return run_scenes<ModesScene>(options, progress);
 }
 
 std::size_t count_differing_pixels(std::span<const ModesRun> runs) {

@@ -23,16 +23,7 @@ struct Bearing {
 class Making {
  public:
   Making(const scene::Scene& scene, const LifeOptions& options, const Tracer& trace)
-      : scene_(scene),
-        options_(options),
-        trace_(trace),
-        surfaces_(scene),
-        offset_(offset_of(scene)),
-        materials_(scene.primitive_count()) {
-    primitives::for_each_kind([&](auto kind) {
-      for (const auto& p : decltype(kind)::of(scene)) materials_[p.number] = p.material;
-    });
-  }
+      : scene_(scene), options_(options), trace_(trace), surfaces_(scene), offset_(offset_of(scene)) {}
 
   std::vector<LifeRay> make() {
     look();
@@ -97,7 +88,7 @@ class Making {
   }
 
   void spawn(std::size_t at, const Hit& hit, const Meeting& met) {
-    const scene::Material& material = scene_.materials[materials_[static_cast<std::size_t>(hit.primitive)]];
+    const scene::Material& material = surfaces_.material(static_cast<std::uint32_t>(hit.primitive));
     const Bearing bearing = bearings_[at];
     const int depth = lives_[at].depth + 1;
     const auto parent = static_cast<std::uint32_t>(at);
@@ -129,7 +120,6 @@ class Making {
   const Tracer& trace_;
   Surfaces surfaces_;
   double offset_;
-  std::vector<std::uint32_t> materials_;  // by primitive number
   std::vector<LifeRay> lives_;
   std::vector<Bearing> bearings_;  // of each
 };

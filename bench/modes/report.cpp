@@ -12,10 +12,10 @@ namespace kdray::bench {
 namespace {
 
 const std::vector<std::string> kBalances = {"odprt sah", "odprt pilot", "odprt dynamic"};
-// A column, or a dash where there is nothing to tell.
-std::string cell(const std::optional<double>& value, double factor, int decimals, int width) {
-  if (!value) return fmt::format("{:>{}}", "-", width);
-  return fmt::format("{:>{}.{}f}", *value * factor, width, decimals);
+
+std::optional<double> times(const std::optional<double>& value, double factor) {
+  if (!value) return std::nullopt;
+  return *value * factor;
 }
 
 std::optional<double> median_of(const std::optional<Spread>& spread) {
@@ -24,12 +24,12 @@ std::optional<double> median_of(const std::optional<Spread>& spread) {
 }
 
 std::string line_of(const ModesRun& run, const ModesRow& row) {
-  return fmt::format("  {:>6}{} {:<21}{:>9.4f}{:>9.4f}{:>9.4f}{}{}{}{}{}{}\n", row.queues,
-                     row.shares_cores() ? '*' : ' ', row.scheme, row.seconds.median, row.seconds.min,
-                     row.seconds.max, cell(run.speed_up(row), 1, 2, 10),
-                     cell(median_of(row.idle_share), 100, 1, 8), cell(row.rays_exchanged, 1e-6, 2, 9),
-                     cell(row.bytes_exchanged, 1e-6, 1, 9), cell(row.geometry_share, 100, 1, 9),
-                     cell(row.work_bytes, 1e-6, 1, 9));
+  return fmt::format(
+      "  {:>6}{} {:<21}{:>9.4f}{:>9.4f}{:>9.4f}{}{}{}{}{}{}\n", row.queues, row.shares_cores() ? '*' : ' ',
+      row.scheme, row.seconds.median, row.seconds.min, row.seconds.max, cell(run.speed_up(row), 10, 2),
+      cell(times(median_of(row.idle_share), 100), 8, 1), cell(times(row.rays_exchanged, 1e-6), 9, 2),
+      cell(times(row.bytes_exchanged, 1e-6), 9, 1), cell(times(row.geometry_share, 100), 9, 1),
+      cell(times(row.work_bytes, 1e-6), 9, 1));
 }
 
 // Rows that failed, those of one message in one line.
@@ -68,12 +68,11 @@ std::string model_table(const ModesRun& run, const ModelOptions& options) {
     const auto efficiency = [&](const char* scheme) -> std::optional<double> {
       const Prediction* const p = model.find(scheme, n);
       if (p == nullptr) return std::nullopt;
-      return p->efficiency;
+      return 100 * p->efficiency;
     };
-    out += fmt::format("  {:>7}{}{}{}{}{}", n, cell(efficiency("pdprt contiguous"), 100, 1, 12),
-                       cell(efficiency("pdprt interleaved"), 100, 1, 13),
-                       cell(efficiency("pdprt bag"), 100, 1, 8), cell(efficiency("odprt sah"), 100, 1, 12),
-                       cell(efficiency("odprt pilot"), 100, 1, 13));
+    out += fmt::format("  {:>7}{}{}{}{}{}", n, cell(efficiency("pdprt contiguous"), 12, 1),
+                       cell(efficiency("pdprt interleaved"), 13, 1), cell(efficiency("pdprt bag"), 8, 1),
+                       cell(efficiency("odprt sah"), 12, 1), cell(efficiency("odprt pilot"), 13, 1));
     if (const Prediction* const p = model.find("odprt pilot", n))
       out += fmt::format(" |{:>9.1f}{:>10.1f}{:>12.1f}{:>11.2f}{:>10.2f}", 100 * p->balance,
                          1e6 * p->port_seconds, 1e6 * p->critical_path, p->rays_sent / std::max(1.0, rays),

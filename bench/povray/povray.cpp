@@ -9,7 +9,6 @@
 
 #include "base/error.h"
 #include "bench/measure/run_program.h"
-#include "bench/povray/pov_writer.h"
 #include "io/image/picture_file.h"
 
 namespace kdray::bench {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <iosfwd>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,6 +15,13 @@
 #include "scene/model/scene.h"
 
 namespace kdray::bench {
+
+// Writes a scene as a POV-Ray file, so that POV-Ray can be timed on the same picture. `depth` as kdray counts
+// it: the eye ray is 1. Rays of less weight than `min_weight` are not followed. What POV-Ray has no word for
+// is left out: attenuation but by the distance's square, ranges, spots, emission.
+void write_pov(std::ostream& out, const scene::Scene& scene, double aspect, int depth, double min_weight);
+// Whether nothing would be left out.
+bool pov_has_words_for(const scene::Scene& scene);
 
 bool has_povray();
 

@@ -7,7 +7,6 @@
 
 #include "bench/embree/embree.h"
 #include "bench/measure/stopwatch.h"
-#include "bench/queries/kdray_side.h"
 #include "bench/race/compare.h"
 #include "bench/workload/scenes.h"
 

@@ -7,6 +7,7 @@
 // Errors  Those of scene::load and kdray/scene.h; ErrorCode::input for a scene without triangles.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,9 +16,19 @@
 #include "bench/measure/progress.h"
 #include "bench/measure/report.h"
 #include "bench/race/asker.h"
-#include "kdray/options.h"
+#include "kdray/kdray.h"
 
 namespace kdray::bench {
+
+// The mesh as a scene that has been committed.
+Scene kdray_scene(const MeshArrays& mesh, const DeviceOptions& device,
+                  Precision geometry = Precision::float32);
+
+// kdray as a side, by way of its public interface. The mesh has to outlive it.
+Side kdray_side(const std::shared_ptr<const Scene>& scene, const MeshArrays& mesh,
+                const DeviceOptions& device);
+// The same with vertices, rays and answers in doubles (TreeOptions::geometry).
+Side double_side(const MeshArrays& mesh, const DeviceOptions& device);
 
 struct QueriesOptions {
   std::vector<std::string> scenes = {"boxes", "spheres"};

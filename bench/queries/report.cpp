@@ -16,9 +16,9 @@ const SideResult* find(const std::vector<SideResult>& sides, std::string_view na
   return found == sides.end() ? nullptr : &*found;
 }
 
-// How many times as long the other takes as kdray; 0: there is no other.
+// How many times as long the other takes as kdray; nothing where there is no other.
 struct Ratio {
-  double wall = 0, cpu = 0;
+  std::optional<double> wall, cpu;
   Ratio(const std::vector<SideResult>& sides, std::string_view other) {
     const SideResult *const kdray = find(sides, "kdray"), *const o = find(sides, other);
     if (kdray == nullptr || o == nullptr) return;
@@ -27,10 +27,6 @@ struct Ratio {
   }
 };
 
-std::string number(double value, int width, int digits) {
-  return value > 0 ? fmt::format("{:>{}.{}f}", value, width, digits) : fmt::format("{:>{}}", "-", width);
-}
-
 std::string side_cells(const SideResult* side) {
   if (side == nullptr) return fmt::format("{:>12}{:>15}{:>8}", "-", "", "");
   return fmt::format("{:>12.1f}{:>15}{:>8}", 1e6 * side->wall.median, side->form, side->n_differing);
@@ -38,17 +34,16 @@ std::string side_cells(const SideResult* side) {
 
 std::string ratio_cells(const std::vector<SideResult>& sides) {
   const Ratio fast(sides, "fast"), robust(sides, "robust");
-  return number(fast.wall, 8, 2) + number(robust.wall, 8, 2) + number(fast.cpu, 9, 2) +
-         number(robust.cpu, 9, 2);
+  return cell(fast.wall, 8, 2) + cell(robust.wall, 8, 2) + cell(fast.cpu, 9, 2) + cell(robust.cpu, 9, 2);
 }
 
-std::string line_of(const CellResult& cell) {
-  const SideResult* const kdray = find(cell.sides, "kdray");
-  return fmt::format("  {:<9}{:<9}{:>8}{:>12.1f}{}{}{}{:>12}{}\n", cell.question, cell.set, cell.batch,
-                     1e6 * kdray->wall.median, side_cells(find(cell.sides, "fast")),
-                     side_cells(find(cell.sides, "robust")), ratio_cells(cell.sides),
-                     cell.on_device ? number(1e6 * cell.on_device->median, 12, 1) : "",
-                     find(cell.sides, "double") ? number(Ratio(cell.sides, "double").wall, 8, 2) : "");
+std::string line_of(const CellResult& c) {
+  const SideResult* const kdray = find(c.sides, "kdray");
+  return fmt::format("  {:<9}{:<9}{:>8}{:>12.1f}{}{}{}{:>12}{}\n", c.question, c.set, c.batch,
+                     1e6 * kdray->wall.median, side_cells(find(c.sides, "fast")),
+                     side_cells(find(c.sides, "robust")), ratio_cells(c.sides),
+                     c.on_device ? cell(1e6 * c.on_device->median, 12, 1) : "",
+                     find(c.sides, "double") ? cell(Ratio(c.sides, "double").wall, 8, 2) : "");
 }
 
 Json json_of(const SideResult& s) {
@@ -63,8 +58,8 @@ Json ratios_of(const std::vector<SideResult>& sides) {
   Json json = Json::object();
   for (const char* const other : {"fast", "robust", "double"}) {
     const Ratio ratio(sides, other);
-    json[other] = ratio.wall > 0 ? Json(ratio.wall) : Json();
-    json[std::string(other) + "_cpu"] = ratio.cpu > 0 ? Json(ratio.cpu) : Json();
+    json[other] = json_if(ratio.wall);
+    json[std::string(other) + "_cpu"] = json_if(ratio.cpu);
   }
   return json;
 }

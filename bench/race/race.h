@@ -6,6 +6,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -44,6 +45,13 @@ struct Outcome {
   double differing_share = 0;       // of rays, against the reference
   std::size_t n_not_identical = 0;  // kdray's own: the most in any run
 };
+
+// kdray's traversals: binary, wide, packet, batch, auto.
+std::span<const std::string_view> traversal_names();
+Traversal traversal_of(std::string_view name);
+
+// Its time is the one that Renderer::statistics() gives: rays and scene already on the device.
+Contestant kdray_contestant(const std::shared_ptr<Renderer>& renderer, const std::string& traversal);
 
 // Without the names of contestant and family.
 Json json_of(const Outcome& outcome, std::size_t n_rays);

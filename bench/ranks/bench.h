@@ -14,11 +14,22 @@
 
 #include "bench/measure/progress.h"
 #include "bench/measure/report.h"
-#include "bench/ranks/ping_pong.h"
 #include "bench/ranks/team.h"
 #include "kdray/kdray.h"
 
 namespace kdray::bench {
+
+// What messages cost on the network that there is.
+struct MessageCosts {
+  double latency = 0;  // one way
+  double bandwidth = 1e12;
+  double send = 0, take = 0;  // of a thread's time, for each message
+};
+
+// Between the first two members of a team, while nobody else does anything: short and long messages there and
+// back, for latency and bandwidth (medians); many short ones in a row, for what sending and taking one
+// occupies a rank's thread (the least). All members call it; what member 0 gets is measured.
+MessageCosts ping_pong(Team& team);
 
 struct RanksOptions {
   std::vector<std::string> scenes;

@@ -7,7 +7,7 @@
 
 #include "bench/embree/embree.h"
 #include "bench/race/compare.h"
-#include "bench/race/kdray_contestants.h"
+#include "bench/race/race.h"
 #include "bench/workload/scenes.h"
 
 namespace kdray::bench {

@@ -13,9 +13,10 @@ std::string heading(const RaysRun& run) {
                      in_words(run.n_primitives), instances, counted(run.machine.cores, "core"));
 }
 
-// How many times as fast as `other`, or 0 when one is missing.
-double ratio(const Outcome* one, const Outcome* other) {
-  return one == nullptr || other == nullptr ? 0 : other->seconds.median / one->seconds.median;
+// How many times as fast as `other`; nothing when one is missing.
+std::optional<double> ratio(const Outcome* one, const Outcome* other) {
+  if (one == nullptr || other == nullptr) return std::nullopt;
+  return other->seconds.median / one->seconds.median;
 }
 
 struct RayRatios {
@@ -27,13 +28,9 @@ struct RayRatios {
         robust(best_of(o, Family::embree_robust)) {}
 };
 
-std::string cell(double value) {
-  return value > 0 ? fmt::format("{:9.2f}", value) : fmt::format("{:>9}", "-");
-}
-
 std::string rates_line(const ClassResult& c) {
   std::string out = fmt::format("  {:<10}{:>9}", c.name, c.n_rays);
-  for (const Outcome& o : c.outcomes) out += cell(mrays_per_s(c.n_rays, o.seconds).median);
+  for (const Outcome& o : c.outcomes) out += cell(mrays_per_s(c.n_rays, o.seconds).median, 9, 2);
   return out + "\n";
 }
 
@@ -76,9 +73,9 @@ std::string ratios(const RaysRun& run) {
     const RayRatios r(c.outcomes);
     out += fmt::format("  {:<10}{}{}{}{}{}{}{}{}\n", c.name, spread_in_words(r.best_kdray, c.n_rays),
                        spread_in_words(r.fast, c.n_rays), spread_in_words(r.robust, c.n_rays),
-                       cell(ratio(r.best_kdray, r.fast)), cell(ratio(r.best_kdray, r.robust)),
-                       cell(ratio(r.automatic, r.fast)), cell(ratio(r.automatic, r.robust)),
-                       cell(ratio(r.automatic, best_fixed(c.outcomes))));
+                       cell(ratio(r.best_kdray, r.fast), 9, 2), cell(ratio(r.best_kdray, r.robust), 9, 2),
+                       cell(ratio(r.automatic, r.fast), 9, 2), cell(ratio(r.automatic, r.robust), 9, 2),
+                       cell(ratio(r.automatic, best_fixed(c.outcomes)), 9, 2));
   }
   return out;
 }
@@ -104,9 +101,7 @@ Json json_of(const ClassResult& c) {
     return json;
   };
   const RayRatios r(c.outcomes);
-  const auto times = [](const Outcome* one, const Outcome* other) {
-    return one && other ? Json(ratio(one, other)) : Json();
-  };
+  const auto times = [](const Outcome* one, const Outcome* other) { return json_if(ratio(one, other)); };
   return {{"name", c.name},
           {"any_hit", c.any_hit},
           {"rays", c.n_rays},

@@ -11,7 +11,7 @@
 
 #include "api/statistics_json.h"
 #include "apps/cli/program.h"
-#include "bench/embree/whitted.h"
+#include "bench/embree/embree.h"
 #include "bench/race/compare.h"
 #include "bench/workload/scenes.h"
 #include "conformance/all_kinds.h"

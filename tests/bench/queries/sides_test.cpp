@@ -6,7 +6,7 @@
 
 #include "apps/cli/program.h"
 #include "bench/embree/embree.h"
-#include "bench/queries/kdray_side.h"
+#include "bench/queries/bench.h"
 #include "bench/race/compare.h"
 
 namespace kdray::bench {
