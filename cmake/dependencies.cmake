@@ -15,7 +15,6 @@ pkg_check_modules(OpenEXR REQUIRED IMPORTED_TARGET OpenEXR)  # libopenexr-dev
 pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)  # libxxhash-dev
 pkg_check_modules(hwy REQUIRED IMPORTED_TARGET libhwy)  # libhwy-dev
 find_package(assimp QUIET)             # libassimp-dev, optional: mesh formats without a reader of our own
-find_package(benchmark QUIET)           # libbenchmark-dev, optional: bench/
 # Optional: libboost-dev (Beast and Asio, headers alone) with libturbojpeg0-dev for `kdray view`, which says what is missing;
 # libturbojpeg0-dev alone for JPEG pictures on surfaces.
 find_package(Boost 1.74 QUIET)

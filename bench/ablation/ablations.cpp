@@ -1,6 +1,6 @@
-#include "bench/ablation/ablations.h"
-
+// What    All that `kdray bench ablation` can take away.
 #include "accel/flatten/features.h"
+#include "bench/ablation/bench.h"
 #include "layout/features.h"
 
 namespace kdray::bench {
@@ -43,16 +43,8 @@ bool is_exact(const Rule& rule, layout::Features features) {
 }  // namespace
 
 const char* name_of(Ablation::Kind kind) {
-  switch (kind) {
-    case Ablation::Kind::specialisation:
-      return "specialisation";
-    case Ablation::Kind::rule:
-      return "rule";
-    case Ablation::Kind::everything:
-      return "everything";
-    default:
-      return "none";
-  }
+  static constexpr const char* kNames[] = {"none", "specialisation", "rule", "everything"};
+  return kNames[static_cast<std::size_t>(kind)];
 }
 
 std::vector<Ablation> ablations_for(layout::Features features) {
@@ -73,14 +65,12 @@ std::vector<Ablation> ablations_for(layout::Features features) {
     if (exact) work |= rule.bit;
   }
   if (features & kSecondary) {
-    all.push_back({.name = "rays below the least weight",
-                   .kind = Ablation::Kind::rule,
-                   .exact = false,
-                   .min_weight_off = true});
-    all.push_back({.name = "rays too deep, to twice the depth",
-                   .kind = Ablation::Kind::rule,
-                   .exact = false,
-                   .twice_as_deep = true});
+    Ablation inexact{.name = "rays below the least weight", .kind = Ablation::Kind::rule, .exact = false};
+    inexact.min_weight_off = true;
+    all.push_back(inexact);
+    inexact.name = "rays too deep, to twice the depth";
+    inexact.min_weight_off = false, inexact.twice_as_deep = true;
+    all.push_back(inexact);
   }
   all.push_back({.name = "everything exact", .kind = Ablation::Kind::everything, .keep = code | work});
   return all;

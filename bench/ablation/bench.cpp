@@ -8,12 +8,10 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <ranges>
 
 #include "accel/flatten/features.h"
 #include "api/hooks.h"
-#include "api/statistics_json.h"
 #include "base/error.h"
 #include "base/timer.h"
 #include "bench/workload/scenes.h"
@@ -32,7 +30,7 @@ std::string unheard_of() {
 struct Frame {
   Picture picture;
   double wall = 0, render = 0;  // seconds of the call; of the frame alone
-  nlohmann::json statistics;
+  std::map<std::string, std::uint64_t> rays;
 
   double beside() const { return wall - render; }
 };
@@ -83,13 +81,8 @@ class AblationScene {
 
   // To be called after a frame: which features are on is known from then on.
   AblationRun describe() const {
-    const nlohmann::json facts = api::statistics_json(renderer_.statistics());
-    return {name_,
-            facts.at("device").at("name"),
-            facts.at("scene").at("primitives"),
-            facts.at("features").at("on"),
-            facts.at("features").at("off"),
-            {}};
+    const Statistics& s = renderer_.statistics();
+    return {name_, s.device.name, s.scene.primitives, s.features.on, s.features.off, {}};
   }
 
   static layout::Features mask_of(const std::vector<std::string>& names) {
@@ -109,8 +102,8 @@ class AblationScene {
                                                  .samples = 1,
                                                  .mode = Mode::pdprt}));
     f.wall = timer.seconds();
-    f.statistics = api::statistics_json(renderer_.statistics());
-    f.render = f.statistics.at("seconds").at("render");
+    f.rays = rays_by_kind(renderer_.statistics());
+    f.render = renderer_.statistics().seconds.render;
     return f;
   }
 
@@ -120,10 +113,8 @@ class AblationScene {
     const bool usual = ablation.kind == Ablation::Kind::none, compiles = usual || ablation.keep != 0;
     const Frame first = frame(ablation), second = frame(ablation);
     AblationRow row;
-    row.ablation = ablation;
+    row.ablation = ablation, row.rays = second.rays;
     if (compiles) row.compile_seconds = std::max(0.0, first.beside() - second.beside());
-    for (const char* const kind : {"primary", "shadow", "reflected", "refracted", "total"})
-      row.rays[kind] = second.statistics.at("rays").at(kind);
     if (usual) usual_ = second.picture;
     compare(second.picture, row);
     return row;
@@ -154,24 +145,14 @@ class AblationScene {
 }  // namespace
 
 std::vector<AblationRun> bench_ablation(const AblationOptions& options,
-                                        const std::function<void(const AblationRun&)>& done,
-                                        const std::function<void(const std::string&)>& working) {
-  std::vector<AblationRun> runs;
-  for (const std::string& name : options.scenes) {
-    working(name);
-    runs.push_back(AblationScene(options, name).run());
-    done(runs.back());
-  }
-  return runs;
+                                        const Progress<AblationRun>& progress) {
+  return run_scenes<AblationScene>(options, progress);
 }
 
 std::size_t count_inexact(std::span<const AblationRun> runs) {
-  std::size_t n = 0;
-  for (const AblationRun& run : runs)
-    n += static_cast<std::size_t>(std::count_if(run.rows.begin(), run.rows.end(), [](const AblationRow& r) {
-      return r.ablation.exact && r.n_differing > 0;
-    }));
-  return n;
+  return count_over(runs, [](const AblationRun& run) {
+    return count_over(run.rows, [](const AblationRow& r) { return r.ablation.exact && r.n_differing > 0; });
+  });
 }
 
 }  // namespace kdray::bench

@@ -6,18 +6,37 @@
 //         Pictures that differ where none may are counted, not thrown.
 #pragma once
 
-#include <functional>
 #include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "bench/ablation/ablations.h"
-#include "bench/measure/json.h"
-#include "bench/measure/spread.h"
+#include "bench/measure/progress.h"
+#include "bench/measure/report.h"
+#include "kdray/kdray.h"
+#include "layout/features.h"
 
 namespace kdray::bench {
+
+// What is taken away: a specialisation (the code that a scene doesn't need is compiled in) or a rule (what it
+// would leave out is done). A rule is exact where it claims that no bit of the picture depends on it. The two
+// that are not leave out light below --min-weight, and what is deeper than --depth.
+struct Ablation {
+  std::string name;  // of what is taken away
+  enum class Kind { none, specialisation, rule, everything } kind = Kind::none;
+  bool exact = true;
+  std::uint64_t keep = 0;       // api::Hooks::keep
+  bool min_weight_off = false;  // rays are spawned whatever they weigh, unless nothing
+  bool twice_as_deep = false;
+};
+
+const char* name_of(Ablation::Kind kind);
+
+// All that can be taken from frames with this mask of features; last everything that is exact at once.
+std::vector<Ablation> ablations_for(layout::Features features);
+
+RenderOptions with(const Ablation& ablation, RenderOptions options);
 
 struct AblationOptions {
   std::vector<std::string> scenes = {"balls", "gears", "mount", "rings",  "teapot",
@@ -46,8 +65,7 @@ struct AblationRun {
 };
 
 std::vector<AblationRun> bench_ablation(const AblationOptions& options,
-                                        const std::function<void(const AblationRun&)>& done,
-                                        const std::function<void(const std::string&)>& working);
+                                        const Progress<AblationRun>& progress);
 
 // Rows that claim to be exact and are not.
 std::size_t count_inexact(std::span<const AblationRun> runs);

@@ -2,18 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
-#include "bench/measure/short_name.h"
-
 namespace kdray::bench {
 
 namespace {
-
-double millions(std::uint64_t n) {
-  return 1e-6 * static_cast<double>(n);
-}
 
 std::string picture_words(const AblationRow& row) {
   if (row.n_differing == 0) return "same bits";
@@ -27,20 +18,18 @@ Json json_of(const AblationRow& row) {
           {"exact", row.ablation.exact},
           {"seconds", json_of(row.seconds)},
           {"ratio", json_of(row.ratio)},
-          {"compile_seconds", row.compile_seconds ? Json(*row.compile_seconds) : Json()},
+          {"compile_seconds", json_if(row.compile_seconds)},
           {"rays", row.rays},
           {"differing_values", row.n_differing},
           {"largest_difference", row.largest_difference}};
 }
 
 Json json_of(const AblationRun& run) {
-  Json json = {{"scene", run.scene},
-               {"device", run.device},
-               {"primitives", run.n_primitives},
-               {"features", {{"on", run.on}, {"off", run.off}}},
-               {"rows", Json::array()}};
-  for (const AblationRow& row : run.rows) json["rows"].push_back(json_of(row));
-  return json;
+  return {{"scene", run.scene},
+          {"device", run.device},
+          {"primitives", run.n_primitives},
+          {"features", {{"on", run.on}, {"off", run.off}}},
+          {"rows", json_list(run.rows, [](const AblationRow& row) { return json_of(row); })}};
 }
 
 }  // namespace
@@ -58,11 +47,12 @@ std::string table_of(const AblationRun& run) {
 }
 
 Json json_of(std::span<const AblationRun> runs, const AblationOptions& options) {
-  Json json = {{"command", "bench ablation"},    {"size", {options.width, options.height}},
-               {"depth", options.depth},         {"repeat", options.repeat},
-               {"inexact", count_inexact(runs)}, {"runs", Json::array()}};
-  for (const AblationRun& run : runs) json["runs"].push_back(json_of(run));
-  return json;
+  return {{"command", "bench ablation"},
+          {"size", {options.width, options.height}},
+          {"depth", options.depth},
+          {"repeat", options.repeat},
+          {"inexact", count_inexact(runs)},
+          {"runs", json_list(runs, [](const AblationRun& run) { return json_of(run); })}};
 }
 
 }  // namespace kdray::bench

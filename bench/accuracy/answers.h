@@ -1,6 +1,8 @@
-// What    What the points of bench accuracy say of adaptive sampling: in what share of its time it is as near
-//         as the base, and how many times as long POV-Ray takes.
-// Shape   Adaptive sampling's time at any error, read off straight lines between its points, both axes
+// What    What the points of bench accuracy say: which of them no other one beats, and of adaptive sampling
+//         in what share of its time it is as near as the base, and how many times as long POV-Ray takes.
+// Shape   A point is beaten by one that is no worse in both costs and better in one; of equal points the
+//         first counts. What is not finite is never on the front.
+//         Adaptive sampling's time at any error, read off straight lines between its points, both axes
 //         logarithmic. At errors above its largest its fastest point counts; below its least there is no
 //         answer.
 #pragma once
@@ -10,6 +12,18 @@
 #include "bench/accuracy/bench.h"
 
 namespace kdray::bench {
+
+struct Cost {
+  double seconds = 0, error = 0;
+};
+
+// The places in `costs` of the points on the Pareto front, from the fastest to the one of the least error.
+std::vector<std::size_t> pareto_front(std::span<const Cost> costs);
+
+void mark_front(std::vector<AccuracyPoint>& points);
+
+// The fastest point of RMSE up to `error`; null where there is none.
+const AccuracyPoint* fastest_within(std::span<const AccuracyPoint> points, double error);
 
 struct AdaptiveAnswers {
   std::optional<double> share_of_base;  // of its seconds, at its error

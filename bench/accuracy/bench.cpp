@@ -2,17 +2,11 @@
 
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <utility>
 
-#include "api/statistics_json.h"
+#include "bench/accuracy/answers.h"
 #include "bench/accuracy/exact.h"
-#include "bench/accuracy/pareto.h"
 #include "bench/accuracy/povray.h"
-#include "bench/accuracy/reference.h"
-#include "bench/accuracy/shown.h"
-#include "bench/measure/cores.h"
-#include "bench/povray/pov_writer.h"
 #include "bench/povray/povray.h"
 #include "bench/workload/scenes.h"
 
@@ -34,13 +28,13 @@ class AccuracyScene {
 
   AccuracyRun run() {
     Renderer& first = renderer({});
-    const nlohmann::json device = api::device_json(first.statistics());
-    run_.device = device.at("name"), run_.cores = cores_of(device);
+    const DeviceInfo device = first.statistics().device;
+    run_.machine = machine_of(first.statistics());
     run_.n_primitives = scene_.primitive_count();
-    run_.reference_in_double = device.value("double_precision", false);
+    run_.reference_in_double = device.double_precision;
     run_.reference_is_exact = exact_.has_value();
     make_reference(first);
-    for (const Setting& s : accuracy_settings({.cpu = device.at("kind") == "cpu",
+    for (const Setting& s : accuracy_settings({.cpu = device.kind == "cpu",
                             .fading_lights = has_fading_lights(scene_),
                             .double_precision = run_.reference_in_double,
                             .quick = options_.quick}))
@@ -66,20 +60,18 @@ class AccuracyScene {
 
   struct Rendered {
     Picture picture;
-    nlohmann::json statistics;
-
-    double seconds() const { return statistics.at("seconds").at("render"); }
-    std::optional<Taken> taken() const {
-      const nlohmann::json& samples = statistics.at("samples");
-      if (samples.at("mode") != "adaptive") return std::nullopt;
-      return Taken{samples.at("per_pixel"), samples.at("estimated_rmse")};
-    }
+    double seconds = 0;
+    std::optional<Taken> taken = {};
   };
 
   Rendered render(const Setting& s) {
     Renderer& r = renderer(s);
-    Picture picture = r.render(render_options(s, options_.width, options_.height));
-    return {std::move(picture), api::statistics_json(r.statistics())};
+    Rendered rendered{r.render(render_options(s, options_.width, options_.height))};
+    rendered.seconds = r.statistics().seconds.render;
+    const std::optional<Statistics::Samples>& samples = r.statistics().samples;
+    if (samples && samples->adaptive)
+      rendered.taken = {samples->per_pixel, samples->adaptive->estimated_rmse};
+    return rendered;
   }
 
   void make_reference(Renderer& r) {
@@ -101,7 +93,7 @@ class AccuracyScene {
   void make_povray(const image::Image& plain) {
     if (exact_ || !options_.povray || !has_povray() || !pov_has_words_for(scene_)) return;
     calls_.working(run_.scene + ": POV-Ray");
-    povray_ = std::make_unique<PovrayPoints>(scene_, reference_, plain, run_.cores, options_.quick);
+    povray_ = std::make_unique<PovrayPoints>(scene_, reference_, plain, run_.machine.cores, options_.quick);
     run_.povray.emplace();
     run_.povray->model_difference = povray_->model_difference();
     run_.povray->has_own_reference = povray_->has_own_reference();
@@ -124,7 +116,7 @@ class AccuracyScene {
     for (AccuracyPoint& point : run_.points) {
       const Rendered rendered = render(point.setting);
       const image::Image image = shown(image_of(rendered.picture));
-      point.taken = rendered.taken();
+      point.taken = rendered.taken;
       if (base.pixels.empty()) base = image;
       judge(point, reference_, image, base);
     }
@@ -151,7 +143,7 @@ class AccuracyScene {
     // This frame is not counted: after POV-Ray's processes a frame takes up to a third longer.
     render(run_.points.front().setting);
     for (std::size_t i = 0; i < run_.points.size(); ++i)
-      seconds_[i].push_back(render(run_.points[i].setting).seconds());
+      seconds_[i].push_back(render(run_.points[i].setting).seconds);
     if (!povray_ || round >= kPovrayRounds) return;
     for (std::size_t i = 0; i < povray_seconds_.size(); ++i)
       povray_seconds_[i].push_back(povray_->trace(i).seconds);
@@ -179,24 +171,11 @@ class AccuracyScene {
 
 }  // namespace
 
-void mark_front(std::vector<AccuracyPoint>& points) {
-  std::vector<Cost> costs;
-  for (const AccuracyPoint& p : points) costs.push_back({p.seconds.median, p.error.rmse});
-  for (const std::size_t i : pareto_front(costs)) points[i].on_front = true;
-}
-
 std::size_t count_unlike_base(std::span<const AccuracyRun> runs) {
-  std::size_t n = 0;
-  for (const AccuracyRun& run : runs)
-    for (const AccuracyPoint& p : run.points) n += keeps_the_picture(p.group) && p.change != 0;
-  return n;
-}
-
-const AccuracyPoint* fastest_within(std::span<const AccuracyPoint> points, double error) {
-  const AccuracyPoint* best = nullptr;
-  for (const AccuracyPoint& p : points)
-    if (p.error.rmse <= error && (best == nullptr || p.seconds.median < best->seconds.median)) best = &p;
-  return best;
+  return count_over(runs, [](const AccuracyRun& run) {
+    return count_over(run.points,
+                      [](const AccuracyPoint& p) { return keeps_the_picture(p.group) && p.change != 0; });
+  });
 }
 
 std::vector<AccuracyRun> bench_accuracy(const AccuracyOptions& options, const AccuracyCalls& calls) {

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "bench/accuracy/settings.h"
-#include "bench/measure/json.h"
-#include "bench/measure/spread.h"
+#include "bench/measure/progress.h"
+#include "bench/measure/report.h"
 #include "io/image/compare.h"
 
 namespace kdray::bench {
@@ -55,9 +55,9 @@ struct PovrayRun {
 };
 
 struct AccuracyRun {
-  std::string scene, device;
+  std::string scene;
   std::size_t n_primitives = 0;
-  int cores = 1;
+  Machine machine;
   bool reference_in_double = false, reference_is_exact = false;  // the latter: nothing was rendered for it
   double reference_seconds = 0, reference_error = 0;             // RMSE that the reference itself may have
   std::vector<AccuracyPoint> points;                             // [0] is the base
@@ -66,20 +66,15 @@ struct AccuracyRun {
 
 struct AccuracyCalls {
   std::function<void(std::span<const AccuracyRun>)> done;  // a scene: all so far, it last
-  std::function<void(const std::string&)> working;
+  Working working;
   // The reference and, by the name of its setting, where each picture differs from it.
   std::function<void(const std::string& scene, const std::string& name, const image::Image&)> picture;
 };
 
 std::vector<AccuracyRun> bench_accuracy(const AccuracyOptions& options, const AccuracyCalls& calls);
 
-void mark_front(std::vector<AccuracyPoint>& points);
-
 // Settings that have to keep the base's picture and don't: 0.
 std::size_t count_unlike_base(std::span<const AccuracyRun> runs);
-
-// The fastest point of RMSE up to `error`; null where there is none.
-const AccuracyPoint* fastest_within(std::span<const AccuracyPoint> points, double error);
 
 // The results for people (a table) and for programs (JSON: docs/bench.md has its keys), in report.cpp.
 

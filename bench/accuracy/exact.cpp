@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <memory>
 
+#include "base/timer.h"
 #include "io/image/compare.h"
 
 namespace kdray::bench {
@@ -168,19 +168,15 @@ using Mean = image::Image (*)(int width, int height, int places);
 
 template <Mean mean, int kPlaces>
 Reference exact_reference(int width, int height) {
-  const auto start = std::chrono::steady_clock::now();
+  const Timer timer;
   Reference r;
   r.image = mean(width, height, kPlaces);
   r.own_error = image::compare(r.image, mean(width, height, kPlaces / 2)).rmse;
-  r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  r.seconds = timer.seconds();
   return r;
 }
 
 }  // namespace
-
-std::vector<std::string> exact_scene_names() {
-  return {kChessboard, kPenumbra};
-}
 
 std::optional<ExactScene> exact_scene(const std::string& name) {
   if (name == kChessboard) return ExactScene{chessboard(), exact_reference<mean_chessboard, 512>};

@@ -9,9 +9,8 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "bench/accuracy/reference.h"
+#include "bench/accuracy/shown.h"
 #include "scene/model/scene.h"
 
 namespace kdray::bench {
@@ -20,8 +19,6 @@ struct ExactScene {
   scene::Scene scene;
   Reference (*reference)(int width, int height);
 };
-
-std::vector<std::string> exact_scene_names();
 
 // Nothing for any other name.
 std::optional<ExactScene> exact_scene(const std::string& name);

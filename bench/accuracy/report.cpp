@@ -3,21 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 
+#include "accel/prepare/prepared.h"
+#include "api/record.h"
 #include "bench/accuracy/answers.h"
-#include "bench/measure/short_name.h"
 
 namespace kdray::bench {
 
 namespace {
 
-const char* precision_name(bool in_double) {
-  return in_double ? "double" : "float";
-}
-std::string precision_of(const AccuracyRun& run) {
-  return run.reference_is_exact ? "exact" : precision_name(run.reference_in_double);
+const char* precision_of(const AccuracyRun& run) {
+  return run.reference_is_exact ? "exact" : run.reference_in_double ? "double" : "float";
 }
 
 // How many times as long a point takes as the fastest of kdray's that is no worse.
@@ -60,8 +57,6 @@ Json point_json(const AccuracyRun& run, const AccuracyPoint& p) {
 }
 
 Json kdray_json(const AccuracyRun& run, const AccuracyPoint& p) {
-  static constexpr std::array kTraversals = {"auto", "binary", "wide", "packet", "batch"};
-  static constexpr std::array kTrees = {"fast", "balanced", "best"};
   Json json = point_json(run, p);
   const Setting& s = p.setting;
   json["change"] = p.change;
@@ -70,25 +65,24 @@ Json kdray_json(const AccuracyRun& run, const AccuracyPoint& p) {
   json["believed_rmse"] = p.taken ? Json(p.taken->believed) : Json();
   json["depth"] = s.depth, json["min_weight"] = s.min_weight;
   json["light_reach"] = s.light_reach > 0 ? Json(s.light_reach) : Json();
-  json["traversal"] = kTraversals[static_cast<std::size_t>(s.traversal)];
-  json["precision"] = precision_name(s.precision == Precision::float64);
-  json["build"] = kTrees[static_cast<std::size_t>(s.quality)];
+  json["traversal"] = api::name_of(s.traversal);
+  json["precision"] = api::name_of(s.precision);
+  json["build"] = prepare::name_of(s.quality);
   return json;
 }
 
 Json povray_json(const AccuracyRun& run) {
   if (!run.povray) return Json();
-  Json json = {{"model_difference", json_of(run.povray->model_difference)},
-               {"has_own_reference", run.povray->has_own_reference},
-               {"points", Json::array()}};
-  for (const AccuracyPoint& p : run.povray->points) {
-    Json point = point_json(run, p);
+  const auto point = [&](const AccuracyPoint& p) {
+    Json json = point_json(run, p);
     const auto match = match_of(run, p);
-    point["kdray"] = match ? Json(match->kdray->name) : Json();
-    point["times_kdray"] = match ? Json(match->times) : Json();
-    json["points"].push_back(std::move(point));
-  }
-  return json;
+    json["kdray"] = match ? Json(match->kdray->name) : Json();
+    json["times_kdray"] = match ? Json(match->times) : Json();
+    return json;
+  };
+  return {{"model_difference", json_of(run.povray->model_difference)},
+          {"has_own_reference", run.povray->has_own_reference},
+          {"points", json_list(run.povray->points, point)}};
 }
 
 // One line: in what share of the base's time, and how many times as long POV-Ray takes.
@@ -109,7 +103,7 @@ std::string answers_of(const AccuracyRun& run) {
 
 Json answers_json(const AccuracyRun& run) {
   const AdaptiveAnswers a = adaptive_answers(run);
-  return {{"share_of_base", a.share_of_base ? Json(*a.share_of_base) : Json()},
+  return {{"share_of_base", json_if(a.share_of_base)},
           {"povray", a.povray != nullptr ? Json(a.povray->name) : Json()},
           {"times_povray", a.povray != nullptr ? Json(a.times_povray) : Json()}};
 }
@@ -132,9 +126,9 @@ std::string picture_name(const std::string& scene, const std::string& name) {
 
 std::string table_of(const AccuracyRun& run) {
   std::string out = fmt::format(
-      "{}: {} primitives, {} core{}; the reference in {} took {:.1f} s and has an RMSE of {:.1e} itself\n"
+      "{}: {} primitives, {}; the reference in {} took {:.1f} s and has an RMSE of {:.1e} itself\n"
       "    {:<35}{:>10}{:>8}{:>11}{:>10}{:>9}{:>9}{:>11}{:>11}{:>8}\n",
-      short_name(run.scene), run.n_primitives, run.cores, run.cores == 1 ? "" : "s", precision_of(run),
+      short_name(run.scene), run.n_primitives, counted(run.machine.cores, "core"), precision_of(run),
       run.reference_seconds, run.reference_error, "* on the front", "ms", "x base", "RMSE", "max", "% >1/255",
       "FLIP", "from base", "believed", "spp");
   const double base = run.points.front().seconds.median;
@@ -154,29 +148,27 @@ std::string table_of(const AccuracyRun& run) {
 }
 
 Json json_of(std::span<const AccuracyRun> runs, const AccuracyOptions& options) {
-  Json json = {{"command", "bench accuracy"},
-               {"size", {options.width, options.height}},
-               {"repeat", options.repeat},
-               {"reference_samples", options.reference_samples},
-               {"unlike_base", count_unlike_base(runs)},
-               {"runs", Json::array()}};
-  for (const AccuracyRun& run : runs) {
-    Json made = {{"scene", run.scene},
-                 {"device", run.device},
-                 {"primitives", run.n_primitives},
-                 {"cores", run.cores},
-                 {"reference",
-                  {{"seconds", run.reference_seconds},
-                   {"own_error", run.reference_error},
-                   {"precision", precision_of(run)},
-                   {"picture", picture_name(run.scene, "reference")}}},
-                 {"points", Json::array()},
-                 {"povray", povray_json(run)},
-                 {"adaptive", answers_json(run)}};
-    for (const AccuracyPoint& p : run.points) made["points"].push_back(kdray_json(run, p));
-    json["runs"].push_back(std::move(made));
-  }
-  return json;
+  const auto of_run = [](const AccuracyRun& run) -> Json {
+    return {{"scene", run.scene},
+            {"primitives", run.n_primitives},
+            {"cores", run.machine.cores},
+            {"device", run.machine.device},
+            {"vectors", run.machine.vectors},
+            {"reference",
+             {{"seconds", run.reference_seconds},
+              {"own_error", run.reference_error},
+              {"precision", precision_of(run)},
+              {"picture", picture_name(run.scene, "reference")}}},
+            {"points", json_list(run.points, [&](const AccuracyPoint& p) { return kdray_json(run, p); })},
+            {"povray", povray_json(run)},
+            {"adaptive", answers_json(run)}};
+  };
+  return {{"command", "bench accuracy"},
+          {"size", {options.width, options.height}},
+          {"repeat", options.repeat},
+          {"reference_samples", options.reference_samples},
+          {"unlike_base", count_unlike_base(runs)},
+          {"runs", json_list(runs, of_run)}};
 }
 
 }  // namespace kdray::bench

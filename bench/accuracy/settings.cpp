@@ -144,13 +144,15 @@ bool is_adaptive(const std::string& group) {
 }
 
 RenderOptions render_options(const Setting& setting, int width, int height) {
-  RenderOptions o;
-  o.width = width, o.height = height;
-  o.samples = setting.samples, o.depth = setting.depth, o.min_weight = setting.min_weight;
-  o.adaptive_target = setting.adaptive_target;
-  o.traversal = setting.traversal, o.precision = setting.precision;
-  o.mode = Mode::pdprt;
-  return o;
+  return {.width = width,
+          .height = height,
+          .depth = setting.depth,
+          .min_weight = setting.min_weight,
+          .samples = setting.samples,
+          .adaptive_target = setting.adaptive_target,
+          .traversal = setting.traversal,
+          .precision = setting.precision,
+          .mode = Mode::pdprt};
 }
 
 bool has_fading_lights(const scene::Scene& scene) {

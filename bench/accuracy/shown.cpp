@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "io/image/color.h"
+#include "io/image/compare.h"
 
 namespace kdray::bench {
 
@@ -44,9 +45,26 @@ image::Image shrunk(const image::Image& image, int factor) {
   return small;
 }
 
-image::Image mean_of(image::Image a, const image::Image& b) {
-  for (std::size_t i = 0; i < a.pixels.size(); ++i) a.pixels[i] = 0.5f * (a.pixels[i] + b.pixels[i]);
-  return a;
+Reference make_reference(Renderer& renderer, int width, int height, int samples, Precision precision) {
+  Reference r;
+  const auto render = [&](int scale, int n) {
+    const Picture picture = renderer.render({.width = scale * width,
+                                             .height = scale * height,
+                                             .depth = 16,
+                                             .min_weight = 0,
+                                             .samples = n,
+                                             .precision = precision,
+                                             .mode = Mode::pdprt});
+    r.seconds += renderer.statistics().seconds.render;
+    return shrunk(image_of(picture), scale);
+  };
+  const image::Image one = render(2, samples / 8), other = render(4, samples / 32);
+  image::Image mean = one;
+  for (std::size_t i = 0; i < mean.pixels.size(); ++i)
+    mean.pixels[i] = 0.5f * (one.pixels[i] + other.pixels[i]);
+  r.image = shown(std::move(mean));
+  r.own_error = image::compare(shown(one), shown(other)).rmse / 2;
+  return r;
 }
 
 image::Image error_picture(const image::Image& reference, const image::Image& image) {

@@ -3,20 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
-#include <nlohmann/json.hpp>
 
-#include "accel/prepare/prepared.h"
-#include "api/statistics_json.h"
-#include "bench/build/builders.h"
-#include "bench/embree/build.h"
 #include "bench/embree/embree.h"
-#include "bench/measure/cores.h"
-#include "bench/race/kdray_contestants.h"
 #include "bench/race/race.h"
-#include "bench/workload/rays.h"
-#include "bench/workload/scenes.h"
 
 namespace kdray::bench {
 
@@ -25,16 +15,14 @@ namespace {
 class BuildScene {
  public:
   BuildScene(const BuildOptions& options, const std::string& name)
-      : options_(options), name_(name), scene_(load_scene(name)), geometry_(scene::make_geometry(scene_)) {
-    if (geometry_.size() == 0)
-      throw Error(ErrorCode::input, name + ": nothing to build a tree of; the scene is empty");
+      : options_(options), name_(name), input_(name), scene_(input_.scene), geometry_(input_.geometry) {
     builders_ = quality_builders(geometry_.size());
     if (options.variants)
       for (Builder& b : thesis_builders(geometry_.size())) builders_.push_back(std::move(b));
   }
 
-  BuildRun run(const std::function<void(const std::string&)>& working) {
-    BuildRun run{name_, kind_counts(geometry_), {}, 0, {}};
+  BuildRun run(const Working& working) {
+    BuildRun run{name_, kind_counts(geometry_), {}, {}};
     working(name_ + ": building");
     time_builds(run);
     working(name_ + ": tracing");
@@ -69,11 +57,9 @@ class BuildScene {
       contestant.mode = builders_[i].name;
       contestants.push_back(std::move(contestant));
     }
-    const auto facts = api::device_json(renderers.front()->statistics());
-    run.device = facts.at("name");
-    run.cores = cores_of(facts);
+    run.machine = machine_of(renderers.front()->statistics());
     if (options_.embree)
-      for (Contestant& c : embree_contestants(make_embree_scenes(scene_), run.cores))
+      for (Contestant& c : embree_contestants(make_embree_scenes(scene_), run.machine.cores))
         if (c.family == Family::embree_fast) contestants.push_back(std::move(c));
     race_classes(*renderers[balanced()], contestants, run);
   }
@@ -85,11 +71,7 @@ class BuildScene {
   }
 
   void race_classes(Renderer& reference, const std::vector<Contestant>& contestants, BuildRun& run) const {
-    const int side = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(options_.rays))));
-    const std::vector<RayClass> classes = make_classes(
-        scene_, build_classes(), side, [&](std::span<const Ray> rays) { return reference.trace(rays); });
-    for (const RayClass& c : classes) {
-      if (c.rays.empty()) continue;
+    for (const RayClass& c : build_rays(scene_, options_.rays, reference)) {
       const std::vector<Hit> hits = reference.trace(c.rays, c.any_hit, 1, Traversal::binary);
       const std::vector<Outcome> outcomes = race(c, hits, contestants, options_.repeat);
       for (BuilderResult& b : run.builders) {
@@ -104,8 +86,9 @@ class BuildScene {
 
   const BuildOptions& options_;
   std::string name_;
-  scene::Scene scene_;
-  scene::Geometry geometry_;
+  BuildInput input_;
+  const scene::Scene& scene_;
+  const scene::Geometry& geometry_;
   std::vector<Builder> builders_;
 };
 
@@ -125,29 +108,26 @@ const BuilderResult* BuildRun::embree() const {
   return fastest;
 }
 
-std::span<const std::string> build_classes() {
-  static const std::vector<std::string> names = {"primary", "diffuse", "random"};
-  return names;
+std::vector<RayClass> build_rays(const scene::Scene& scene, int rays, Renderer& renderer) {
+  static const std::vector<std::string> kClasses = {"primary", "diffuse", "random"};
+  std::vector<RayClass> classes =
+      make_classes(scene, kClasses, side_of(rays), [&](std::span<const Ray> r) { return renderer.trace(r); });
+  std::erase_if(classes, [](const RayClass& c) { return c.rays.empty(); });
+  return classes;
 }
 
-std::vector<BuildRun> bench_build(const BuildOptions& options,
-                                  const std::function<void(const BuildRun&)>& done,
-                                  const std::function<void(const std::string&)>& working) {
+std::vector<BuildRun> bench_build(const BuildOptions& options, const Progress<BuildRun>& progress) {
   static const std::vector<std::string> kDefault = {"boxes", "spheres", "balls", "rings", "displaced"};
-  std::vector<BuildRun> runs;
-  for (const std::string& name : options.scenes.empty() ? kDefault : options.scenes) {
-    runs.push_back(BuildScene(options, name).run(working));
-    done(runs.back());
-  }
-  return runs;
+  return run_each(options.scenes.empty() ? kDefault : options.scenes, progress,
+                  [&](const std::string& name) { return BuildScene(options, name).run(progress.working); });
 }
 
 std::size_t count_not_identical(std::span<const BuildRun> runs) {
-  std::size_t n = 0;
-  for (const BuildRun& run : runs)
-    for (const BuilderResult& b : run.builders)
-      for (const TraceTimes& t : b.traces) n += b.tree ? t.n_not_identical : 0;
-  return n;
+  return count_over(runs, [](const BuildRun& run) {
+    return count_over(run.builders, [](const BuilderResult& b) {
+      return count_over(b.traces, [&](const TraceTimes& t) { return b.tree ? t.n_not_identical : 0; });
+    });
+  });
 }
 
 }  // namespace kdray::bench

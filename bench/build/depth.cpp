@@ -1,22 +1,18 @@
-#include "bench/build/depth.h"
-
+// What    bench depth, and its report.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "accel/prepare/prepared.h"
-#include "bench/build/tree_facts.h"
-#include "bench/race/compare_hits.h"
-#include "bench/workload/rays.h"
-#include "bench/workload/scenes.h"
+#include "bench/build/bench.h"
+#include "bench/race/compare.h"
 
 namespace kdray::bench {
 
 namespace {
 
 constexpr int kDeepest = 64;
+constexpr double kDearest = 1000;  // expected cost, beyond which tracing would take minutes
 
 struct Measured {
   std::vector<BuildTimes> builds;
@@ -26,18 +22,15 @@ struct Measured {
 class DepthScene {
  public:
   DepthScene(const DepthOptions& options, const std::string& name)
-      : options_(options), name_(name), scene_(load_scene(name)), geometry_(scene::make_geometry(scene_)) {
-    if (geometry_.size() == 0)
-      throw Error(ErrorCode::input, name + ": nothing to build a tree of; the scene is empty");
-  }
+      : options_(options), name_(name), input_(name) {}
 
   DepthRun run() {
     Renderer usual(PreparedScene(prepare_with(-1)), device());
     make_rays(usual);
     DepthRun run{name_,
                  usual.statistics().device.name,
-                 geometry_.size(),
-                 kdtree::depth_limit(kdtree::BuildConfig{}, geometry_.size()),
+                 input_.geometry.size(),
+                 kdtree::depth_limit(kdtree::BuildConfig{}, input_.geometry.size()),
                  {}};
     for (const int depth : depths_to_try(run.usual_depth)) run.rows.push_back({depth, {}, {}, {}, 0});
     std::vector<Measured> measured(run.rows.size());
@@ -53,23 +46,20 @@ class DepthScene {
  private:
   kdtree::BuildConfig config(int depth) const {
     return prepare::config_of({.quality = options_.quality, .max_depth = depth, .binary_form = false},
-                              geometry_.size());
+                              input_.geometry.size());
   }
   prepare::Prepared prepare_with(int depth) const {
-    return prepare::prepare(scene_, geometry_, config(depth));
+    return prepare::prepare(input_.scene, input_.geometry, config(depth));
   }
 
   void make_rays(Renderer& usual) {
-    const int side = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(options_.rays))));
-    classes_ = make_classes(scene_, build_classes(), side,
-                            [&](std::span<const Ray> rays) { return usual.trace(rays); });
-    std::erase_if(classes_, [](const RayClass& c) { return c.rays.empty(); });
+    classes_ = build_rays(input_.scene, options_.rays, usual);
     for (const RayClass& c : classes_) hits_.push_back(usual.trace(c.rays, c.any_hit, 1, Traversal::binary));
   }
 
   // Measures one round of a depth; the first warms up and is not counted.
   void measure(DepthRow& row, bool counts, Measured& measured) const {
-    const BuildTimes times = time_build(scene_, geometry_, config(row.max_depth));
+    const BuildTimes times = time_build(input_.scene, input_.geometry, config(row.max_depth));
     if (counts) measured.builds.push_back(times);
     prepare::Prepared made = prepare_with(row.max_depth);
     row.tree = facts_of(made);
@@ -96,11 +86,26 @@ class DepthScene {
 
   const DepthOptions& options_;
   std::string name_;
-  scene::Scene scene_;
-  scene::Geometry geometry_;
+  BuildInput input_;
   std::vector<RayClass> classes_;
   std::vector<std::vector<Hit>> hits_;
 };
+
+Json json_of(const DepthRow& row) {
+  return {{"max_depth", row.max_depth},
+          {"seconds", json_of(row.seconds)},
+          {"trace_seconds", json_if(row.trace_seconds)},
+          {"tree", json_of(row.tree)},
+          {"not_identical", row.n_not_identical}};
+}
+
+Json json_of(const DepthRun& run) {
+  return {{"scene", run.scene},
+          {"device", run.device},
+          {"primitives", run.n_primitives},
+          {"usual_depth", run.usual_depth},
+          {"depths", json_list(run.rows, [](const DepthRow& row) { return json_of(row); })}};
+}
 
 }  // namespace
 
@@ -112,23 +117,43 @@ std::vector<int> depths_to_try(int usual) {
   return depths;
 }
 
-std::vector<DepthRun> bench_depth(const DepthOptions& options,
-                                  const std::function<void(const DepthRun&)>& done,
-                                  const std::function<void(const std::string&)>& working) {
-  std::vector<DepthRun> runs;
-  for (const std::string& name : options.scenes) {
-    working(name);
-    runs.push_back(DepthScene(options, name).run());
-    done(runs.back());
-  }
-  return runs;
+std::vector<DepthRun> bench_depth(const DepthOptions& options, const Progress<DepthRun>& progress) {
+  return run_scenes<DepthScene>(options, progress);
 }
 
 std::size_t count_not_identical(std::span<const DepthRun> runs) {
-  std::size_t n = 0;
-  for (const DepthRun& run : runs)
-    for (const DepthRow& row : run.rows) n += row.n_not_identical;
-  return n;
+  return count_over(runs, [](const DepthRun& run) {
+    return count_over(run.rows, [](const DepthRow& row) { return row.n_not_identical; });
+  });
+}
+
+std::string table_of(const DepthRun& run) {
+  std::string out = fmt::format(
+      "{}: {} primitives, usually {} deep\n  {:>5}{:>8}{:>10}{:>10}{:>9}{:>11}{:>11}{:>11}{:>11}{:>12}\n",
+      short_name(run.scene), run.n_primitives, run.usual_depth, "depth", "reached", "build ms", "cpu ms",
+      "refs", "binary MB", "wide MB", "SAH cost", "tight", "ms/3M rays");
+  for (const DepthRow& row : run.rows) {
+    out += fmt::format("  {:>5}{:>8}{:>10.2f}{:>10.2f}{:>9.2f}{:>11.2f}{:>11.2f}{:>11.4g}{:>11.4g}",
+                       row.max_depth, row.tree.max_depth, 1e3 * row.seconds.total.median,
+                       1e3 * row.seconds.cpu.median, row.tree.duplication, millions(row.tree.binary_bytes),
+                       millions(row.tree.wide_bytes), row.tree.sah_cost, row.tree.tight_cost);
+    out += row.trace_seconds ? fmt::format("{:>12.1f}\n", 1e3 * row.trace_seconds->median)
+                             : fmt::format("{:>12}\n", "-");
+  }
+  for (const DepthRow& row : run.rows)
+    if (row.n_not_identical > 0)
+      out += fmt::format("  depth {}: {} hits are not those of the usual depth\n", row.max_depth,
+                         row.n_not_identical);
+  return out;
+}
+
+Json json_of(std::span<const DepthRun> runs, const DepthOptions& options) {
+  return {{"command", "bench depth"},
+          {"build", prepare::name_of(options.quality)},
+          {"rays", options.rays},
+          {"repeat", options.repeat},
+          {"not_identical", count_not_identical(runs)},
+          {"runs", json_list(runs, [](const DepthRun& run) { return json_of(run); })}};
 }
 
 }  // namespace kdray::bench

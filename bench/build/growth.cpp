@@ -1,13 +1,12 @@
-#include "bench/build/growth.h"
-
+// What    bench build --growth, and its report.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/process_memory.h"
 #include "bench/build/bench.h"
-#include "bench/build/builders.h"
-#include "bench/embree/build.h"
+#include "bench/embree/embree.h"
 #include "scene/generate/displaced_sphere.h"
 
 namespace kdray::bench {
@@ -23,18 +22,17 @@ double duplication_of(const scene::Geometry& geometry, const kdtree::BuildConfig
 }
 
 GrowthResult measure_size(std::size_t n, const GrowthOptions& options) {
-  const scene::Scene scene = generate::displaced_sphere_of(n);
-  const scene::Geometry geometry = scene::make_geometry(scene);
-  GrowthResult result{geometry.size(), {}};
+  const BuildInput input(generate::displaced_sphere_of(n));
+  GrowthResult result{input.geometry.size(), {}};
   std::vector<TimedBuild> builds;
-  std::vector<Builder> builders = quality_builders(geometry.size());
+  std::vector<Builder> builders = quality_builders(input.geometry.size());
   if (n >= kLarge) std::erase_if(builders, [](const Builder& b) { return b.name == "best"; });
   for (const Builder& b : builders) {
-    builds.push_back([&scene, &geometry, &b] { return time_build(scene, geometry, b.config); });
-    result.rows.push_back({b.name, {}, {}, duplication_of(geometry, b.config)});
+    builds.push_back([&] { return time_build(input.scene, input.geometry, b.config); });
+    result.rows.push_back({b.name, {}, {}, duplication_of(input.geometry, b.config)});
   }
   if (options.embree)
-    for (EmbreeBuild& embree : embree_builds(scene, geometry)) {
+    for (EmbreeBuild& embree : embree_builds(input.scene, input.geometry)) {
       builds.push_back(std::move(embree.build));
       result.rows.push_back({embree.name, {}, {}, {}});
     }
@@ -46,18 +44,60 @@ GrowthResult measure_size(std::size_t n, const GrowthOptions& options) {
   return result;
 }
 
+double nanoseconds_each(const GrowthResult& result, const GrowthRow& row) {
+  return 1e9 * row.seconds.total.median / static_cast<double>(result.n_triangles);
+}
+
+// How much longer each triangle takes than at the smallest size that was measured with this builder, for each
+// doubling of their number.
+double growth(std::span<const GrowthResult> results, const GrowthResult& result, const GrowthRow& row) {
+  const auto each = [&](const GrowthResult& r, const GrowthRow& b) {
+    return nanoseconds_each(r, b) / std::log2(static_cast<double>(r.n_triangles));
+  };
+  for (const GrowthResult& r : results)
+    for (const GrowthRow& b : r.rows)
+      if (b.builder == row.builder) return each(result, row) / each(r, b);
+  return 1;
+}
+
 }  // namespace
 
-std::vector<GrowthResult> bench_growth(const GrowthOptions& options,
-                                       const std::function<void(const GrowthResult&)>& done,
-                                       const std::function<void(const std::string&)>& working) {
-  std::vector<GrowthResult> results;
-  for (const std::size_t n : options.sizes) {
-    working(fmt::format("{} triangles", n));
-    results.push_back(measure_size(n, options));
-    done(results.back());
+std::vector<GrowthResult> bench_growth(const GrowthOptions& options, const Progress<GrowthResult>& progress) {
+  return run_each(options.sizes, progress, [&](std::size_t n) {
+    progress.working(fmt::format("{} triangles", n));
+    return measure_size(n, options);
+  });
+}
+
+std::string table_of(const GrowthResult& result) {
+  std::string out = fmt::format("{} triangles\n  {:<15}{}{:>9}{:>7}{:>9}\n", result.n_triangles,
+                                "milliseconds", times_heading(), "ns each", "refs", "peak MB");
+  for (const GrowthRow& row : result.rows) {
+    out += fmt::format("  {:<15}{}{:>9.1f}", row.builder, times_cells(row.seconds),
+                       nanoseconds_each(result, row));
+    out += row.duplication ? fmt::format("{:>7.2f}", *row.duplication) : fmt::format("{:>7}", "");
+    out +=
+        row.peak_bytes ? fmt::format("{:>9.1f}\n", millions(*row.peak_bytes)) : fmt::format("{:>9}\n", "-");
   }
-  return results;
+  return out;
+}
+
+Json json_of(std::span<const GrowthResult> results, const GrowthOptions& options) {
+  const auto size = [&](const GrowthResult& r) -> Json {
+    const auto builder = [&](const GrowthRow& row) -> Json {
+      return {{"builder", row.builder},
+              {"seconds", json_of(row.seconds)},
+              {"nanoseconds_per_triangle", nanoseconds_each(r, row)},
+              {"growth_over_n_log_n", growth(results, r, row)},
+              {"duplication", json_if(row.duplication)},
+              {"peak_bytes", json_if(row.peak_bytes)}};
+    };
+    return {{"triangles", r.n_triangles}, {"builders", json_list(r.rows, builder)}};
+  };
+  return {{"command", "bench build --growth"},
+          {"embree", embree_json(options.embree)},
+          {"repeat", options.repeat},
+          {"sizes", json_list(results, size)}};
 }
 
 }  // namespace kdray::bench

@@ -1,9 +1,10 @@
-#include "bench/build/hostile.h"
+// What    bench build --hostile, and its report.
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 
-#include "accel/prepare/prepared.h"
+#include "bench/build/bench.h"
 #include "scene/generate/displaced_sphere.h"
 #include "scene/generate/hostile_meshes.h"
 
@@ -11,66 +12,84 @@ namespace kdray::bench {
 
 namespace {
 
-class Mesh {
- public:
+struct Mesh {
   Mesh(scene::Scene&& scene, BuildQuality quality)
-      : scene_(std::move(scene)),
-        geometry_(scene::make_geometry(scene_)),
-        config_(prepare::config_of({.quality = quality, .binary_form = false}, geometry_.size())) {}
+      : input(std::move(scene)),
+        config(prepare::config_of({.quality = quality, .binary_form = false}, input.geometry.size())),
+        built{.n_triangles = input.geometry.size(),
+              .tree = facts_of(prepare::prepare(input.scene, input.geometry, config))} {}
 
-  BuildTimes build() const { return time_build(scene_, geometry_, config_); }
-  prepare::Prepared prepared() const { return prepare::prepare(scene_, geometry_, config_); }
-  std::size_t size() const { return geometry_.size(); }
+  BuildTimes build() const { return time_build(input.scene, input.geometry, config); }
 
- private:
-  scene::Scene scene_;
-  scene::Geometry geometry_;
-  kdtree::BuildConfig config_;
+  BuildInput input;
+  kdtree::BuildConfig config;
+  BuiltMesh built;
 };
 
-HostileResult race_mesh(const generate::HostileMesh& hostile, const Mesh& plain,
-                        const prepare::Prepared& plain_made, const HostileOptions& o) {
+HostileResult race_mesh(const generate::HostileMesh& hostile, const Mesh& plain, const HostileOptions& o) {
   const Mesh mesh(hostile.make(static_cast<std::uint32_t>(o.triangles)), o.quality);
-  HostileResult r;
-  r.mesh = hostile.name, r.what = hostile.what;
-  r.n_triangles = mesh.size(), r.n_plain_triangles = plain.size();
-  {
-    const prepare::Prepared made = mesh.prepared();
-    r.duplication = made.tree.duplication;
-    r.wide_bytes = made.wide.bytes();
-    r.tight_cost = made.tree.tight_cost;
-    r.largest_leaf = made.tree.largest_leaf;
-    r.max_depth = made.tree.max_depth;
-  }
-  r.plain_duplication = plain_made.tree.duplication;
-  r.plain_tight_cost = plain_made.tree.tight_cost;
-  r.plain_wide_bytes = plain_made.wide.bytes();
+  HostileResult r{std::string(hostile.name), std::string(hostile.what), mesh.built, plain.built};
   const std::array<TimedBuild, 2> builds = {[&] { return plain.build(); }, [&] { return mesh.build(); }};
   const std::vector<BuildSpreads> seconds = race_builds(builds, o.repeat);
-  r.plain_seconds = seconds[0], r.seconds = seconds[1];
+  r.plain.seconds = seconds[0], r.hostile.seconds = seconds[1];
   return r;
 }
 
-bool is_wanted(std::string_view name, const std::vector<std::string>& wanted) {
-  return wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+std::string row(const std::string& name, const BuiltMesh& m) {
+  return fmt::format("  {:<12}{:>10}{}{:>9.2f}{:>9.1f}{:>10.4g}", name, m.n_triangles, times_cells(m.seconds),
+                     m.tree.duplication, millions(m.tree.wide_bytes), m.tree.tight_cost);
 }
 
 }  // namespace
 
 std::vector<HostileResult> bench_hostile(const HostileOptions& options,
-                                         const std::function<void(const HostileResult&)>& done,
-                                         const std::function<void(const std::string&)>& working) {
+                                         const Progress<HostileResult>& progress) {
   const Mesh plain(generate::displaced_sphere_of(static_cast<std::size_t>(options.triangles)),
                    options.quality);
-  const prepare::Prepared plain_made = plain.prepared();
-  std::vector<HostileResult> results;
-  for (const generate::HostileMesh& hostile : generate::hostile_meshes()) {
-    if (!is_wanted(hostile.name, options.meshes)) continue;
-    working(std::string(hostile.name));
-    results.push_back(race_mesh(hostile, plain, plain_made, options));
-    done(results.back());
-  }
-  return results;
+  std::vector<generate::HostileMesh> wanted;
+  for (const generate::HostileMesh& mesh : generate::hostile_meshes())
+    if (options.meshes.empty() || std::ranges::find(options.meshes, mesh.name) != options.meshes.end())
+      wanted.push_back(mesh);
+  return run_each(wanted, progress, [&](const generate::HostileMesh& mesh) {
+    progress.working(std::string(mesh.name));
+    return race_mesh(mesh, plain, options);
+  });
+}
+
+std::string hostile_heading() {
+  return fmt::format("  {:<12}{:>10}{}{:>9}{:>9}{:>10}{:>8}{:>8}{:>7}{:>8}", "milliseconds", "triangles",
+                     times_heading(), "refs/tri", "wide MB", "cost", "x time", "x cpu", "depth", "leaf");
+}
+
+std::string table_of(const HostileResult& r) {
+  return row(r.mesh, r.hostile) +
+         fmt::format("{:>8.2f}{:>8.2f}{:>7}{:>8}\n", r.times_plain(), r.cpu_times_plain(),
+                     r.hostile.tree.max_depth, r.hostile.tree.largest_leaf) +
+         row("  (plain)", r.plain);
+}
+
+Json json_of(std::span<const HostileResult> results, const HostileOptions& options) {
+  const auto mesh = [](const HostileResult& r) -> Json {
+    return {{"mesh", r.mesh},
+            {"what", r.what},
+            {"triangles", r.hostile.n_triangles},
+            {"seconds", json_of(r.hostile.seconds)},
+            {"plain_seconds", json_of(r.plain.seconds)},
+            {"times_plain", r.times_plain()},
+            {"cpu_times_plain", r.cpu_times_plain()},
+            {"duplication", r.hostile.tree.duplication},
+            {"plain_duplication", r.plain.tree.duplication},
+            {"wide_bytes", r.hostile.tree.wide_bytes},
+            {"plain_wide_bytes", r.plain.tree.wide_bytes},
+            {"tight_cost", r.hostile.tree.tight_cost},
+            {"plain_tight_cost", r.plain.tree.tight_cost},
+            {"largest_leaf", r.hostile.tree.largest_leaf},
+            {"max_depth", r.hostile.tree.max_depth}};
+  };
+  return {{"command", "bench build --hostile"},
+          {"triangles", options.triangles},
+          {"repeat", options.repeat},
+          {"meshes", json_list(results, mesh)}};
 }
 
 }  // namespace kdray::bench

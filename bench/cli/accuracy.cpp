@@ -1,20 +1,14 @@
 // What    kdray bench accuracy: time against error of every setting, beside POV-Ray's antialiasing.
-// Shape   Tables go to stderr; with --report DIR the figures go to DIR/accuracy.json, the plot beside it, and
-//         to DIR/accuracy the references and where each picture differs from them. All of it as soon as a
-//         scene is done: a reference may take an hour, and a run that is stopped keeps the scenes before.
-// Errors  A traversal or tree whose picture is not the base's: exit code 1, after everything has been
-//         written.
+// Shape   To the folder "accuracy" in that of the report go the references and where each picture differs
+//         from them. All of it as soon as a scene is done: a reference may take an hour, and a run that is
+//         stopped keeps the scenes before.
 #include <fmt/format.h>
 
-#include <memory>
-
-#include "apps/cli/options.h"
 #include "apps/cli/output.h"
 #include "bench/accuracy/bench.h"
 #include "bench/accuracy/exact.h"
-#include "bench/accuracy/reference.h"
+#include "bench/accuracy/shown.h"
 #include "bench/cli/bench_command.h"
-#include "bench/cli/commands.h"
 #include "bench/povray/povray.h"
 #include "io/image/picture_file.h"
 
@@ -28,21 +22,11 @@ constexpr const char* kName = "accuracy";
 
 using AccuracyCommand = BenchCommand<bench::AccuracyOptions>;
 
-void prepare_pictures(const std::string& report) {
-  if (report.empty()) return;
-  const std::filesystem::path folder = std::filesystem::path(report) / kName;
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error)
-    throw input_error(folder.string(), 0, "can't be made a folder: " + error.message(),
-                      "choose another --report");
-}
-
 int run(const AccuracyCommand& c) {
   for (const std::string& name : c.options.scenes)
     if (!bench::exact_scene(name)) require_scenes({name});
   prepare_report(c.report, kName);
-  prepare_pictures(c.report);
+  if (!c.report.empty()) make_folder(std::filesystem::path(c.report) / kName);
   if (c.options.povray && !bench::has_povray()) say("povray is not installed: its points are left out");
   const bench::AccuracyCalls calls = {
       .done =
@@ -69,24 +53,26 @@ int parse_samples(const std::string& text) {
   return samples;
 }
 
+void add_options(CLI::App& app, AccuracyCommand& c) {
+  bench::AccuracyOptions& o = c.options;
+  add_scenes(app, o.scenes);
+  add_size(app, "Pixels across and down (default 512x512)", kReferenceSideMax, kReferencePixelsMax, o.width,
+           o.height);
+  add_text(app, "--reference-samples", "N",
+           "Samples per pixel of the reference, a multiple of 32 (default 256)",
+           [&o](const std::string& text) { o.reference_samples = parse_samples(text); });
+  app.add_flag_callback(
+      "--no-povray", [&o] { o.povray = false; }, "Leave POV-Ray out");
+  app.add_flag("--quick", o.quick, "A few settings only");
+}
+
 }  // namespace
 
 Command add_bench_accuracy(CLI::App& bench) {
-  CLI::App* const app = bench.add_subcommand(
-      kName, "Time against error: samples, depth, least weight and the rest, and POV-Ray's antialiasing");
-  const auto c = std::make_shared<AccuracyCommand>();
-  bench::AccuracyOptions& o = c->options;
-  add_scenes(*app, o.scenes);
-  add_size(*app, "Pixels across and down (default 512x512)", kReferenceSideMax, kReferencePixelsMax, o.width,
-           o.height);
-  add_text(*app, "--reference-samples", "N",
-           "Samples per pixel of the reference, a multiple of 32 (default 256)",
-           [&o](const std::string& text) { o.reference_samples = parse_samples(text); });
-  app->add_flag_callback(
-      "--no-povray", [&o] { o.povray = false; }, "Leave POV-Ray out");
-  app->add_flag("--quick", o.quick, "A few settings only");
-  add_usual(*app, *c);
-  return {app, [c] { return run(*c); }};
+  return add_command(
+      bench, kName,
+      "Time against error: samples, depth, least weight and the rest, and POV-Ray's antialiasing",
+      add_options, run);
 }
 
 }  // namespace kdray::cli

@@ -5,7 +5,6 @@
 
 #include <cstdio>
 
-#include "apps/cli/options.h"
 #include "apps/cli/output.h"
 #include "base/write_file.h"
 #include "bench/embree/embree.h"
@@ -34,12 +33,17 @@ void draw(const std::string& report) {
 
 }  // namespace
 
-void prepare_report(const std::string& folder, const std::string& name) {
-  if (folder.empty()) return;
+void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error)
-    throw input_error(folder, 0, "can't be made a folder: " + error.message(), "choose another --report");
+    throw input_error(folder.string(), 0, "can't be made a folder: " + error.message(),
+                      "choose another --report");
+}
+
+void prepare_report(const std::string& folder, const std::string& name) {
+  if (folder.empty()) return;
+  make_folder(folder);
   for (const char* const ending : {".json", ".svg"})
     check_writable(std::filesystem::path(folder) / (name + ending));
 }

@@ -1,14 +1,9 @@
-// What    kdray bench build: what trees cost to build and what they gain, over scenes, over sizes, over
-//         hostile meshes.
-// Shape   Tables go to stderr, each as soon as its scene is done; with --report DIR the figures go to
-//         DIR/build.json (or growth, hostile) and a plot beside it.
-#include <memory>
-
-#include "apps/cli/options.h"
+// What    The commands that build trees. bench build: what they cost to build and what they gain, over
+//         scenes, over sizes, over hostile meshes. bench depth: what trees of every maximum depth cost to
+//         build, to hold and to trace.
 #include "apps/cli/output.h"
-#include "bench/build/report.h"
+#include "bench/build/bench.h"
 #include "bench/cli/bench_command.h"
-#include "bench/cli/commands.h"
 #include "scene/generate/hostile_meshes.h"
 
 namespace kdray::cli {
@@ -57,25 +52,45 @@ int run(const BuildCommand& c) {
   return c.hostile ? run_hostile(c) : run_build(c);
 }
 
+void add_build_options(CLI::App& app, BuildCommand& c) {
+  bench::BuildOptions& o = c.options;
+  add_scenes(app, o.scenes, "boxes spheres balls rings displaced");
+  app.add_flag("--variants", o.variants,
+               "The thesis' builders too: perfect, boxed, spatial median, object median");
+  app.add_flag("--growth", c.growth, "Meshes of 10 thousand to 10 million triangles instead of scenes");
+  app.add_flag("--hostile", c.hostile, "Meshes made to break a builder instead of scenes");
+  add_build_option(app, c.hostile_quality)->description("Of --hostile (default: balanced)");
+  add_int(app, "--triangles", "Of a hostile mesh (default 1000000); the most of a growing one", 1000,
+          kTrianglesMax, c.triangles);
+  add_rays(app, o.rays);
+  add_no_embree(app, o.embree);
+}
+
+using DepthCommand = BenchCommand<bench::DepthOptions>;
+
+int run_depth(const DepthCommand& c) {
+  require_scenes(c.options.scenes);
+  const auto runs = run_bench("depth", c.options, c.report, bench::bench_depth);
+  require_none(bench::count_not_identical(runs), "hits are not those over the tree of usual depth");
+  return 0;
+}
+
+void add_depth_options(CLI::App& app, DepthCommand& c) {
+  add_scenes(app, c.options.scenes);
+  add_build_option(app, c.options.quality);
+  add_rays(app, c.options.rays);
+}
+
 }  // namespace
 
 Command add_bench_build(CLI::App& bench) {
-  CLI::App* const app =
-      bench.add_subcommand("build", "Building trees: times, quality, memory, beside Embree's");
-  const auto c = std::make_shared<BuildCommand>();
-  bench::BuildOptions& o = c->options;
-  add_scenes(*app, o.scenes, "boxes spheres balls rings displaced");
-  app->add_flag("--variants", o.variants,
-                "The thesis' builders too: perfect, boxed, spatial median, object median");
-  app->add_flag("--growth", c->growth, "Meshes of 10 thousand to 10 million triangles instead of scenes");
-  app->add_flag("--hostile", c->hostile, "Meshes made to break a builder instead of scenes");
-  add_build_option(*app, c->hostile_quality)->description("Of --hostile (default: balanced)");
-  add_int(*app, "--triangles", "Of a hostile mesh (default 1000000); the most of a growing one", 1000,
-          kTrianglesMax, c->triangles);
-  add_rays(*app, o.rays);
-  add_no_embree(*app, o.embree);
-  add_usual(*app, *c);
-  return {app, [c] { return run(*c); }};
+  return add_command(bench, "build", "Building trees: times, quality, memory, beside Embree's",
+                     add_build_options, run);
+}
+
+Command add_bench_depth(CLI::App& bench) {
+  return add_command(bench, "depth", "Trees by their maximum depth: build time, trace time, memory, cost",
+                     add_depth_options, run_depth);
 }
 
 }  // namespace kdray::cli

@@ -1,17 +1,10 @@
 // What    kdray bench modes: one core alone, PDPRT and ODPRT on growing numbers of queues, and a model of
 //         many more; with --ranks by ranks, of this process or of several that mpirun has started.
-// Shape   Tables go to stderr, each as soon as its scene is done, then the means over all scenes; with
-//         --report DIR the figures go to DIR/modes.json and plots beside it.
-// Errors  Pictures that are not the same bits: exit code 1, after everything has been written. A mode that
-//         fails is told.
+// Errors  A mode that fails is told.
 #include <algorithm>
-#include <memory>
 
-#include "apps/cli/options.h"
 #include "apps/cli/output.h"
-#include "base/text.h"
 #include "bench/cli/bench_command.h"
-#include "bench/cli/commands.h"
 #include "bench/modes/bench.h"
 #include "bench/ranks/bench.h"
 #include "cluster/transport/mpi.h"
@@ -29,28 +22,19 @@ struct ModesCommand : BenchCommand<bench::ModesOptions> {
   double delay_ms = 2.5;  // too
 };
 
-// "1,2,4": each once, in order.
-std::vector<int> parse_queues(const std::string& text) {
-  std::vector<int> queues;
-  for (const std::string& item : split_list(text))
-    queues.push_back(parse_int("--queues", item, 1, kQueuesMax));
-  std::sort(queues.begin(), queues.end());
-  queues.erase(std::unique(queues.begin(), queues.end()), queues.end());
-  return queues;
-}
-
 bench::RanksOptions options_of_ranks(const ModesCommand& c, int most_ranks) {
   const bench::ModesOptions& o = c.options;
-  bench::RanksOptions options;
-  options.scenes = o.scenes;
-  options.ranks.clear();
-  for (const int ranks : o.queues)
-    if (ranks <= most_ranks) options.ranks.push_back(ranks);
-  options.delays = {0};
+  bench::RanksOptions options{.scenes = o.scenes,
+                              .ranks = o.queues,
+                              .delays = {0},
+                              .width = o.width,
+                              .height = o.height,
+                              .depth = o.depth,
+                              .samples = c.samples,
+                              .repeat = o.repeat,
+                              .device = o.device};
+  std::erase_if(options.ranks, [&](int ranks) { return ranks > most_ranks; });
   if (c.delay_ms > 0) options.delays.push_back(1e-3 * c.delay_ms);
-  options.width = o.width, options.height = o.height, options.depth = o.depth, options.repeat = o.repeat;
-  options.samples = c.samples;
-  options.device = o.device;
   return options;
 }
 
@@ -82,18 +66,22 @@ int run_ranks(const ModesCommand& c) {
         }
         auto of_member = bench::bench_ranks(
             team, shelf, over_mpi, asked,
-            [&](const bench::RanksRun& run) { print_table(bench::table_of(run, asked)); }, say_working);
+            {[&](const bench::RanksRun& run) { print_table(bench::table_of(run, asked)); }, say_working});
         if (team.leads()) runs = std::move(of_member);
       });
   if (launched.rank != 0) return 0;
   write_report(c.report, "ranks", bench::json_of(runs, asked));
-  if (bench::count_differing_pictures(runs) > 0)
-    throw Error(ErrorCode::internal, "some ranks' pictures are not the bits of one core's");
+  require_none(bench::count_differing_pictures(runs),
+               "of the ranks' pictures are not the bits of one core's");
   return 0;
 }
 
-int run(const ModesCommand& c) {
-  require_scenes(c.options.scenes);
+int run(const ModesCommand& asked) {
+  require_scenes(asked.options.scenes);
+  ModesCommand c = asked;  // numbers of queues each once, in order
+  std::ranges::sort(c.options.queues);
+  c.options.queues.erase(std::unique(c.options.queues.begin(), c.options.queues.end()),
+                         c.options.queues.end());
   if (c.ranks) return run_ranks(c);
   const auto runs = run_bench("modes", c.options, c.report, bench::bench_modes);
   print_table(bench::summary_of(runs));
@@ -101,29 +89,30 @@ int run(const ModesCommand& c) {
   return 0;
 }
 
+void add_options(CLI::App& app, ModesCommand& c) {
+  bench::ModesOptions& o = c.options;
+  add_scenes(app, o.scenes);
+  add_values(app, "--queues", "Numbers of queues (default 1,2,4,8)", o.queues,
+             [](const auto& option, const auto& text) { return parse_int(option, text, 1, kQueuesMax); });
+  add_picture_size(app, kPixelsMax, o.width, o.height);
+  add_depth(app, o.depth);
+  add_real(app, "--bandwidth", "GB/s", "Of a link between queues, for the model (default 10)", 1e-6, 1e9,
+           o.model_options.gigabytes_per_second);
+  add_real(app, "--latency", "US", "Microseconds from queue to queue, for the model (default 2)", 0, 1e9,
+           o.model_options.latency_us);
+  add_int(app, "--sample", "Eye rays that the model follows (default 65536)", 1, 1 << 24,
+          o.model_options.sample);
+  app.add_flag_callback(
+      "--no-model", [&o] { o.model = false; }, "Measure only");
+  add_ranks(app, c);
+}
+
 }  // namespace
 
 Command add_bench_modes(CLI::App& bench) {
-  CLI::App* const app = bench.add_subcommand(
-      "modes", "PDPRT and ODPRT against one core alone, and a model of up to 10,000 queues");
-  const auto c = std::make_shared<ModesCommand>();
-  bench::ModesOptions& o = c->options;
-  add_scenes(*app, o.scenes);
-  add_text(*app, "--queues", "LIST", "Numbers of queues (default 1,2,4,8)",
-           [&o](const std::string& text) { o.queues = parse_queues(text); });
-  add_picture_size(*app, kPixelsMax, o.width, o.height);
-  add_depth(*app, o.depth);
-  add_real(*app, "--bandwidth", "GB/s", "Of a link between queues, for the model (default 10)", 1e-6, 1e9,
-           o.model_options.gigabytes_per_second);
-  add_real(*app, "--latency", "US", "Microseconds from queue to queue, for the model (default 2)", 0, 1e9,
-           o.model_options.latency_us);
-  add_int(*app, "--sample", "Eye rays that the model follows (default 65536)", 1, 1 << 24,
-          o.model_options.sample);
-  app->add_flag_callback(
-      "--no-model", [&o] { o.model = false; }, "Measure only");
-  add_ranks(*app, *c);
-  add_usual(*app, *c);
-  return {app, [c] { return run(*c); }};
+  return add_command(bench, "modes",
+                     "PDPRT and ODPRT against one core alone, and a model of up to 10,000 queues",
+                     add_options, run);
 }
 
 }  // namespace kdray::cli

@@ -3,50 +3,49 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "bench/embree/sides.h"
+#include "bench/embree/embree.h"
 
 namespace kdray::bench::embree {
 
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr auto kAddNothing = [](auto&, unsigned, std::size_t) {};
-
-template <unsigned N>
-void closest(Mesh& mesh, bool coherent, const QuerySet& set, std::size_t first, std::size_t n, Answers& a) {
+// take(packed, lane, i) finds what became of each ray of the set.
+template <unsigned N, bool any_hit, class Take>
+void trace_set(Mesh& mesh, bool coherent, const QuerySet& set, std::size_t first, std::size_t n,
+               const Take& take) {
   mesh.workers.run(n, [&](std::size_t, std::size_t begin, std::size_t end) {
     Query query(mesh.plain.library(), coherent);
-    trace_rays<N, false>(mesh.plain.get(), query, set, first + begin, first + end, kAddNothing,
-                         [&](Packed<N, false>& packed, unsigned lane, std::size_t i) {
-                           const Hits<N>& hit = packed.hit;
-                           const bool missed = hit.geometry[lane] == kNone;
-                           a.t[i] = missed ? kInfinity : packed.ray.t_far[lane];
-                           a.geometry[i] = hit.geometry[lane];
-                           a.primitive[i] = missed ? kNoPrimitive : hit.primitive[lane];
-                           a.u[i] = missed ? 0 : hit.u[lane];
-                           a.v[i] = missed ? 0 : hit.v[lane];
-                         });
+    trace_rays<N, any_hit>(mesh.plain.get(), query, first + begin, first + end, rays_from(set), take);
   });
 }
 
 template <unsigned N>
+void closest(Mesh& mesh, bool coherent, const QuerySet& set, std::size_t first, std::size_t n, Answers& a) {
+  const auto take = [&](const RayHits<N>& packed, unsigned lane, std::size_t i) {
+    const Hits<N>& hit = packed.hit;
+    const bool missed = hit.geometry[lane] == kNone;
+    a.t[i] = missed ? kInfinity : packed.ray.t_far[lane];
+    a.geometry[i] = hit.geometry[lane];
+    a.primitive[i] = missed ? kNoPrimitive : hit.primitive[lane];
+    a.u[i] = missed ? 0 : hit.u[lane];
+    a.v[i] = missed ? 0 : hit.v[lane];
+  };
+  trace_set<N, false>(mesh, coherent, set, first, n, take);
+}
+
+template <unsigned N>
 void any(Mesh& mesh, bool coherent, const QuerySet& set, std::size_t first, std::size_t n, Answers& a) {
-  mesh.workers.run(n, [&](std::size_t, std::size_t begin, std::size_t end) {
-    Query query(mesh.plain.library(), coherent);
-    trace_rays<N, true>(mesh.plain.get(), query, set, first + begin, first + end, kAddNothing,
-                        [&](Packed<N, true>& packed, unsigned lane, std::size_t i) {
-                          // Embree's own mark of an occluded ray.
-                          a.hit[i] = packed.t_far[lane] < 0;
-                        });
+  trace_set<N, true>(mesh, coherent, set, first, n, [&](const Rays<N>& rays, unsigned lane, std::size_t i) {
+    a.hit[i] = rays.t_far[lane] < 0;  // Embree's own mark of an occluded ray
   });
 }
 
 void add_forms(Side& side, const std::shared_ptr<Mesh>& mesh) {
   for (const unsigned lanes : {1u, 16u})
     for (const bool coherent : {true, false})
-      side.forms.push_back({fmt::format("{}:{} {}", mesh->device->library().major, lanes,
-                                        coherent ? "coherent" : "incoherent"),
-                            std::make_shared<MeshAsker>(mesh, RayForm{coherent, lanes})});
+      side.forms.push_back(
+          {fmt::format("{}:{} {}", mesh->plain.library().major, lanes, coherent ? "coherent" : "incoherent"),
+           std::make_shared<MeshAsker>(mesh, RayForm{coherent, lanes})});
 }
 
 Side side(const MeshArrays& mesh, bool robust, int threads) {
@@ -55,9 +54,12 @@ Side side(const MeshArrays& mesh, bool robust, int threads) {
     add_forms(side, std::make_shared<Mesh>(library, mesh, robust, threads));
   side.first_answer = [&mesh, robust](const QuerySet& set) {
     const Library& newest = libraries().back();
-    const ArrayScene scene(std::make_shared<OpenDevice>(newest), mesh, robust, nullptr);
+    const KindBuffers buffers = buffers_of(mesh);
+    OwnedScene scene(std::make_shared<OpenDevice>(newest), robust);
+    scene.add(buffers);
+    scene.commit();
     Query query(newest, true);
-    trace_rays<1, false>(scene.get(), query, set, 0, 1, kAddNothing, [](auto&, unsigned, std::size_t) {});
+    trace_rays<1, false>(scene.get(), query, 0, 1, rays_from(set), [](auto&, unsigned, std::size_t) {});
   };
   return side;
 }
@@ -65,12 +67,20 @@ Side side(const MeshArrays& mesh, bool robust, int threads) {
 }  // namespace
 
 Mesh::Mesh(const Library& library, const MeshArrays& mesh, bool robust, int threads)
+    : Mesh(std::make_shared<OpenDevice>(library), mesh, robust, threads) {}
+
+Mesh::Mesh(const std::shared_ptr<OpenDevice>& device, const MeshArrays& mesh, bool robust, int threads)
     : arrays(mesh),
-      device(std::make_shared<OpenDevice>(library)),
-      plain(device, mesh, robust, nullptr),
-      counting(device, mesh, robust, note_count),
-      collecting(device, mesh, robust, note_hit),
-      workers(threads) {}
+      buffers(buffers_of(mesh)),
+      plain(device, robust),
+      counting(device, robust),
+      collecting(device, robust),
+      workers(threads) {
+  plain.add(buffers);
+  counting.add(buffers, note_count);
+  collecting.add(buffers, note_hit);
+  for (OwnedScene* const scene : {&plain, &counting, &collecting}) scene->commit();
+}
 
 void MeshAsker::ask(Question question, const QuerySet& set, std::size_t first, std::size_t n, Answers& a) {
   switch (question) {

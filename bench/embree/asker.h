@@ -7,22 +7,38 @@
 
 #include <memory>
 
-#include "bench/embree/array_rays.h"
-#include "bench/embree/array_scene.h"
+#include "bench/embree/packets.h"
+#include "bench/embree/scenes.h"
 #include "bench/embree/workers.h"
 #include "bench/race/asker.h"
 
 namespace kdray::bench::embree {
+
+// A form of tracing.
+struct RayForm {
+  bool coherent;
+  unsigned lanes;  // 1, 16
+};
 
 // The mesh's scenes in one mode.
 struct Mesh {
   Mesh(const Library& library, const MeshArrays& mesh, bool robust, int threads);
 
   const MeshArrays& arrays;
-  std::shared_ptr<OpenDevice> device;
-  ArrayScene plain, counting, collecting;
+  KindBuffers buffers;
+  OwnedScene plain, counting, collecting;
   Workers workers;
+
+ private:
+  Mesh(const std::shared_ptr<OpenDevice>& device, const MeshArrays& mesh, bool robust, int threads);
 };
+
+// Puts ray i of the set, for trace_rays().
+inline auto rays_from(const QuerySet& set) {
+  return [&set](auto& rays, unsigned lane, std::size_t i) {
+    put_ray(rays, lane, &set.origins[3 * i], &set.directions[3 * i]);
+  };
+}
 
 class MeshAsker : public Asker {
  public:

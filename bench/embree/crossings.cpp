@@ -31,18 +31,19 @@ void refuse_all(const FilterArguments* args, const Note& note) {
 
 // Traces rays [first + begin, first + end) for what the scene's filter notes of them with `user`.
 template <unsigned N>
-void trace_through(const ArrayScene& scene, bool coherent, const QuerySet& set, std::size_t first,
+void trace_through(const OwnedScene& scene, bool coherent, const QuerySet& set, std::size_t first,
                    std::size_t end, void* user) {
   Query query(scene.library(), coherent, user);
-  trace_rays<N, true>(
-      scene.get(), query, set, first, end,
-      [&](Rays<N>& rays, unsigned lane, std::size_t i) { rays.id[lane] = static_cast<unsigned>(i - first); },
-      [](auto&, unsigned, std::size_t) {});
+  const auto put = [&, put = rays_from(set)](Rays<N>& rays, unsigned lane, std::size_t i) {
+    put(rays, lane, i);
+    rays.id[lane] = static_cast<unsigned>(i - first);
+  };
+  trace_rays<N, true>(scene.get(), query, first, end, put, [](auto&, unsigned, std::size_t) {});
 }
 
 // Packets are never flagged as coherent: their walk (of 3.13.5) calls the filter several times for a hit,
 // where there are several hits, and counts would be wrong.
-void trace_through(const ArrayScene& scene, const RayForm& form, const QuerySet& set, std::size_t first,
+void trace_through(const OwnedScene& scene, const RayForm& form, const QuerySet& set, std::size_t first,
                    std::size_t end, void* user) {
   form.lanes == 1 ? trace_through<1>(scene, form.coherent, set, first, end, user)
                   : trace_through<16>(scene, false, set, first, end, user);

@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <atomic>
 #include <latch>
-#include <limits>
 #include <thread>
 
 #include "base/timer.h"
-#include "bench/embree/array_rays.h"
+#include "bench/embree/packets.h"
 #include "bench/embree/scenes.h"
 #include "bench/embree/workers.h"
 
@@ -18,7 +17,6 @@ namespace kdray::bench::embree {
 namespace {
 
 constexpr std::size_t kChunk = 4096;  // rays that a thread draws at a time
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 struct Setting {
   bool robust, coherent, stream;
@@ -43,21 +41,6 @@ double on_threads(int n_threads, std::size_t n, std::size_t chunk, const TraceCh
   start.count_down();
   for (std::thread& t : threads) t.join();
   return timer.seconds();
-}
-
-template <unsigned N>
-void set_ray(Rays<N>& rays, unsigned i, const Ray& ray, const LocalSpace& space) {
-  const vec3 center(space.center);
-  const auto scale = static_cast<float>(space.scale);
-  for (int k = 0; k < 3; ++k) {
-    rays.origin[k][i] = (ray.origin[k] - center[k]) * scale;
-    rays.direction[k][i] = ray.direction[k];
-  }
-  rays.t_near[i] = ray.t_min * scale;
-  rays.t_far[i] = ray.t_max * scale;
-  rays.time[i] = 0;
-  rays.mask[i] = ~0u;
-  rays.id[i] = rays.flags[i] = 0;
 }
 
 // The rays of a class N to a struct, traced once.
@@ -95,8 +78,12 @@ class Tracer {
     const auto lane = static_cast<unsigned>(i % N);
     Ray ray = rays[std::min(i, rays.size() - 1)];
     if (i >= rays.size()) ray.t_min = kInfinity, ray.t_max = -kInfinity;
-    set_ray(rays_of(packed_[i / N]), lane, ray, scenes_.space());
-    if constexpr (!any_hit) packed_[i / N].hit.geometry[lane] = packed_[i / N].hit.instance[lane] = kNone;
+    const vec3 center(scenes_.space().center);
+    const auto scale = static_cast<float>(scenes_.space().scale);
+    float origin[3];
+    for (int k = 0; k < 3; ++k) origin[k] = (ray.origin[k] - center[k]) * scale;
+    put_ray(rays_of(packed_[i / N]), lane, origin, ray.direction, ray.t_min * scale, ray.t_max * scale);
+    put_no_hit(packed_[i / N], lane);
   }
 
   const int* valid_of(std::size_t packet) const { return (packet + 1) * N <= n_rays_ ? all_ : last_; }
@@ -174,6 +161,11 @@ std::string embree_versions() {
   for (const embree::Library& library : embree::libraries())
     versions += (versions.empty() ? "" : " and ") + library.version;
   return versions;
+}
+
+Json embree_json(bool is_wanted) {
+  const std::string versions = is_wanted ? embree_versions() : "";
+  return versions.empty() ? Json() : Json(versions);
 }
 
 EmbreeScenes make_embree_scenes(const scene::Scene& scene) {

@@ -50,28 +50,24 @@ class Loader {
   std::string file_;
 };
 
-void load_scenes(const Loader& from, Library& e) {
+void load_functions(const Loader& from, Library& e) {
+  from.required(e.new_device, "NewDevice");
+  from.required(e.release_device, "ReleaseDevice");
+  from.required(e.get_device_error, "GetDeviceError");
+  from.required(e.get_device_property, "GetDeviceProperty");
   from.required(e.new_scene, "NewScene");
   from.required(e.release_scene, "ReleaseScene");
   from.required(e.set_scene_flags, "SetSceneFlags");
   from.required(e.set_scene_build_quality, "SetSceneBuildQuality");
-  from.required(e.attach_geometry, "AttachGeometry");
   from.required(e.attach_geometry_by_id, "AttachGeometryByID");
   from.required(e.commit_scene, "CommitScene");
-}
-
-void load_geometries(const Loader& from, Library& e) {
   from.required(e.new_geometry, "NewGeometry");
   from.required(e.release_geometry, "ReleaseGeometry");
   from.required(e.commit_geometry, "CommitGeometry");
-  from.required(e.set_new_geometry_buffer, "SetNewGeometryBuffer");
   from.required(e.set_shared_geometry_buffer, "SetSharedGeometryBuffer");
   from.required(e.set_geometry_occluded_filter_function, "SetGeometryOccludedFilterFunction");
   from.required(e.set_geometry_instanced_scene, "SetGeometryInstancedScene");
   from.required(e.set_geometry_transform, "SetGeometryTransform");
-}
-
-void load_queries(const Loader& from, Library& e) {
   from.required(e.point_query, "PointQuery");
   constexpr const char* kWidths[] = {"1", "8", "16"};
   for (int i = 0; i < 3; ++i) {
@@ -84,17 +80,8 @@ void load_queries(const Loader& from, Library& e) {
 
 Library load(void* handle, const std::string& file) {
   Library e{};
-  const Loader from(handle, file);
-  from.required(e.new_device, "NewDevice");
-  from.required(e.release_device, "ReleaseDevice");
-  from.required(e.get_device_error, "GetDeviceError");
-  from.required(e.get_device_property, "GetDeviceProperty");
-  load_scenes(from, e);
-  load_geometries(from, e);
-  load_queries(from, e);
-  const Device device = open(e);
-  const auto version = e.get_device_property(device, DeviceProperty::version);
-  e.release_device(device);
+  load_functions(Loader(handle, file), e);
+  const auto version = e.get_device_property(OpenDevice(e).get(), DeviceProperty::version);
   e.major = static_cast<int>(version / 10000);
   e.version = fmt::format("{}.{}.{}", e.major, version / 100 % 100, version % 100);
   if ((e.major != 3 && e.major != 4) || (e.major == 3 && e.intersect_nm == nullptr))
@@ -116,17 +103,16 @@ std::vector<std::string> named_files() {
 
 std::vector<Library> find_libraries() {
   std::map<int, Library> found;
-  for (const char* const file : {"libembree3.so.3", "libembree4.so.4"})
-    if (void* const handle = dlopen(file, kMode)) {
-      Library e = load(handle, file);
-      found[e.major] = std::move(e);
-    }
-  for (const std::string& file : named_files()) {
+  const auto look_for = [&](const std::string& file) {
     void* const handle = dlopen(file.c_str(), kMode);
-    if (handle == nullptr) throw Error(ErrorCode::input, fmt::format("KDRAY_EMBREE: {}", dlerror()));
+    if (handle == nullptr) return false;
     Library e = load(handle, file);
     found[e.major] = std::move(e);
-  }
+    return true;
+  };
+  for (const char* const file : {"libembree3.so.3", "libembree4.so.4"}) look_for(file);
+  for (const std::string& file : named_files())
+    if (!look_for(file)) throw Error(ErrorCode::input, fmt::format("KDRAY_EMBREE: {}", dlerror()));
   std::vector<Library> all;
   for (auto& [major, library] : found) all.push_back(std::move(library));
   return all;
@@ -139,10 +125,9 @@ std::span<const Library> libraries() {
   return found;
 }
 
-Device open(const Library& library) {
-  const Device device = library.new_device("frequency_level=simd512");
-  if (device == nullptr) throw Error(ErrorCode::internal, "Embree gives no device");
-  return device;
+OpenDevice::OpenDevice(const Library& library)
+    : library_(library), device_(library.new_device("frequency_level=simd512")) {
+  if (device_ == nullptr) throw Error(ErrorCode::internal, "Embree gives no device");
 }
 
 }  // namespace kdray::bench::embree

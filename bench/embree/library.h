@@ -28,15 +28,12 @@ struct Library {
   void (*release_scene)(Scene);
   void (*set_scene_flags)(Scene, SceneFlags);
   void (*set_scene_build_quality)(Scene, BuildQuality);
-  unsigned (*attach_geometry)(Scene, Geometry);
   void (*attach_geometry_by_id)(Scene, Geometry, unsigned id);
   void (*commit_scene)(Scene);
 
   Geometry (*new_geometry)(Device, GeometryType);
   void (*release_geometry)(Geometry);
   void (*commit_geometry)(Geometry);
-  void* (*set_new_geometry_buffer)(Geometry, BufferType, unsigned slot, Format, std::size_t stride,
-                                   std::size_t n);
   void (*set_shared_geometry_buffer)(Geometry, BufferType, unsigned slot, Format, const void* data,
                                      std::size_t offset, std::size_t stride, std::size_t n);
   void (*set_geometry_occluded_filter_function)(Geometry, Filter);
@@ -55,7 +52,20 @@ struct Library {
 // In order of their versions; loaded once.
 std::span<const Library> libraries();
 
-// As many vectors as the processor has. Throws ErrorCode::internal where Embree gives no device.
-Device open(const Library& library);
+// A device with vectors as wide as the processor has. Throws ErrorCode::internal where Embree gives none.
+class OpenDevice {
+ public:
+  explicit OpenDevice(const Library& library);
+  ~OpenDevice() { library_.release_device(device_); }
+  OpenDevice(const OpenDevice&) = delete;
+  OpenDevice& operator=(const OpenDevice&) = delete;
+
+  const Library& library() const { return library_; }
+  Device get() const { return device_; }
+
+ private:
+  const Library& library_;
+  Device device_;
+};
 
 }  // namespace kdray::bench::embree

@@ -8,8 +8,6 @@ namespace kdray::bench::embree {
 
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
 struct Nearest {
   vec3 point;
   float u, v;  // weights of the second and third corner

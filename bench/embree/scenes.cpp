@@ -1,22 +1,10 @@
 #include "bench/embree/scenes.h"
 
 #include "base/error.h"
-#include "bench/embree/kinds.h"
 
 namespace kdray::bench::embree {
 
 namespace {
-
-template <class Primitives>
-void attach(const Library& embree, Device device, Scene into, unsigned id, GeometryType type,
-            const Primitives& primitives) {
-  if (primitives.empty()) return;
-  const Geometry g = embree.new_geometry(device, type);
-  fill(embree, g, primitives);
-  embree.commit_geometry(g);
-  embree.attach_geometry_by_id(into, g, id);
-  embree.release_geometry(g);
-}
 
 template <class Kind>
 std::vector<std::uint32_t> numbers_of(Kind, const scene::Scene& scene, const scene::Geometry& geometry) {
@@ -32,78 +20,81 @@ std::vector<std::uint32_t> numbers_of(Kind, const scene::Scene& scene, const sce
 
 }  // namespace
 
-Scenes::Scenes(const Library& embree, const scene::Scene& scene) : embree_(embree), device_(open(embree)) {
-  const scene::Geometry geometry = scene::make_geometry(scene);
-  space_ = geometry.space;
-  const auto numbers = [](const scene::Scene& of, const scene::Geometry& g) {
-    Numbers all;
-    primitives::for_each_kind([&](auto kind) { all[kind.kNumber] = numbers_of(kind, of, g); });
-    return all;
-  };
-  numbers_ = numbers(scene, geometry);
-  for (const auto& mesh : scene.meshes) {
-    meshes_.push_back(scene::make_geometry(*mesh));
-    of_meshes_.push_back(numbers(*mesh, meshes_.back()));
-  }
-  for (const scene::Instance& instance : scene.instances) mesh_of_.push_back(instance.mesh);
-  const auto made = [&](SceneFlags flags) {
-    const Scene all = build(geometry, flags);
-    add_instances(all, scene, flags);
-    finish(all);
-    return all;
-  };
-  fast_ = made(SceneFlags::none);
-  robust_ = made(SceneFlags::robust);
-  meshes_.clear();
+OwnedScene::OwnedScene(std::shared_ptr<const OpenDevice> device, bool robust)
+    : device_(std::move(device)), scene_(library().new_scene(device_->get())) {
+  library().set_scene_flags(scene_, robust ? SceneFlags::robust : SceneFlags::none);
+  library().set_scene_build_quality(scene_, BuildQuality::medium);
 }
 
-Scenes::~Scenes() {
-  embree_.release_scene(fast_);
-  embree_.release_scene(robust_);
-  embree_.release_device(device_);
-}
-
-Scene Scenes::build(const scene::Geometry& geometry, SceneFlags flags) const {
-  const Scene made = embree_.new_scene(device_);
-  embree_.set_scene_flags(made, flags);
-  embree_.set_scene_build_quality(made, BuildQuality::medium);
+void OwnedScene::add(const KindBuffers& buffers, Filter filter) {
   primitives::for_each_kind([&](auto kind) {
-    if constexpr (kEmbreeHas<decltype(kind)>)
-      attach(embree_, device_, made, kind.kNumber, embree_type(kind), decltype(kind)::of(geometry));
-    else
-      refuse_any(kind, geometry);
+    const Buffers& b = buffers[kind.kNumber];
+    if (b.n_vertices == 0) return;
+    const Geometry g = library().new_geometry(device_->get(), embree_type(kind));
+    share(library(), g, b, kind.kIsShape);
+    if (filter != nullptr) library().set_geometry_occluded_filter_function(g, filter);
+    attach(g, kind.kNumber);
   });
-  return made;
+}
+
+void OwnedScene::add_instance(const OwnedScene& of, const float (&columns)[12], unsigned number) {
+  const Geometry g = library().new_geometry(device_->get(), GeometryType::instance);
+  library().set_geometry_instanced_scene(g, of.get());
+  library().set_geometry_transform(g, 0, Format::float3x4_column_major, columns);
+  attach(g, number);
+}
+
+void OwnedScene::attach(Geometry geometry, unsigned number) {
+  library().commit_geometry(geometry);
+  library().attach_geometry_by_id(scene_, geometry, number);
+  library().release_geometry(geometry);
+}
+
+void OwnedScene::commit() {
+  library().commit_scene(scene_);
+  if (library().get_device_error(device_->get()) != 0)
+    throw Error(ErrorCode::internal, "Embree refuses the scene");
+}
+
+Scenes::Part::Part(const scene::Scene& scene, const scene::Geometry& geometry)
+    : space(geometry.space), buffers(buffers_of(scene, geometry)) {
+  primitives::for_each_kind([&](auto kind) { numbers[kind.kNumber] = numbers_of(kind, scene, geometry); });
+}
+
+Scenes::Scenes(const Library& embree, const scene::Scene& scene)
+    : device_(std::make_shared<OpenDevice>(embree)), own_(scene, scene::make_geometry(scene)) {
+  for (const auto& mesh : scene.meshes)
+    meshes_.push_back(std::make_unique<Part>(*mesh, scene::make_geometry(*mesh)));
+  for (const scene::Instance& instance : scene.instances) mesh_of_.push_back(instance.mesh);
+  fast_ = make(scene, false);
+  robust_ = make(scene, true);
 }
 
 // Instances hold their meshes' scenes.
-void Scenes::add_instances(Scene into, const scene::Scene& scene, SceneFlags flags) const {
-  std::vector<Scene> meshes;
-  for (const scene::Geometry& mesh : meshes_) finish(meshes.emplace_back(build(mesh, flags)));
+std::unique_ptr<OwnedScene> Scenes::make(const scene::Scene& scene, bool robust) const {
+  auto made = std::make_unique<OwnedScene>(device_, robust);
+  made->add(own_.buffers);
+  std::vector<std::unique_ptr<OwnedScene>> meshes;
+  for (const auto& mesh : meshes_) {
+    meshes.push_back(std::make_unique<OwnedScene>(device_, robust));
+    meshes.back()->add(mesh->buffers);
+    meshes.back()->commit();
+  }
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const scene::Instance& instance = scene.instances[i];
-    const LocalSpace& of_mesh = meshes_[instance.mesh].space;
-    const dmat3 linear = instance.linear * (space_.scale / of_mesh.scale);
-    const dvec3 move = space_.local(instance.point(of_mesh.center));
+    const LocalSpace& of_mesh = meshes_[instance.mesh]->space;
+    const dmat3 linear = instance.linear * (space().scale / of_mesh.scale);
+    const dvec3 move = space().local(instance.point(of_mesh.center));
     float columns[12];
     for (int k = 0; k < 3; ++k) {
       for (int column = 0; column < 3; ++column)
         columns[3 * column + k] = static_cast<float>(linear[column][k]);
       columns[9 + k] = static_cast<float>(move[k]);
     }
-    const Geometry g = embree_.new_geometry(device_, GeometryType::instance);
-    embree_.set_geometry_instanced_scene(g, meshes[instance.mesh]);
-    embree_.set_geometry_transform(g, 0, Format::float3x4_column_major, columns);
-    embree_.commit_geometry(g);
-    embree_.attach_geometry_by_id(into, g, kFirstInstance + static_cast<unsigned>(i));
-    embree_.release_geometry(g);
+    made->add_instance(*meshes[instance.mesh], columns, kFirstInstance + static_cast<unsigned>(i));
   }
-  for (const Scene mesh : meshes) embree_.release_scene(mesh);
-}
-
-void Scenes::finish(Scene made) const {
-  embree_.commit_scene(made);
-  if (embree_.get_device_error(device_) != 0) throw Error(ErrorCode::internal, "Embree refuses the scene");
+  made->commit();
+  return made;
 }
 
 }  // namespace kdray::bench::embree

@@ -1,4 +1,4 @@
-#include "bench/embree/whitted.h"
+// What    Whole frames by Embree (embree.h).
 
 #include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -9,10 +9,12 @@
 #include <cmath>
 
 #include "base/timer.h"
-#include "bench/embree/query.h"
+#include "bench/embree/embree.h"
+#include "bench/embree/packets.h"
 #include "bench/embree/scenes.h"
 #include "bench/embree/workers.h"
 #include "bench/workload/pixel_order.h"
+#include "bench/workload/rays.h"
 
 namespace kdray::bench::embree {
 
@@ -20,7 +22,6 @@ namespace {
 
 constexpr int kTile = 16;
 constexpr float kOff = 0x1p-6f;  // that rays begin off a surface; a scene reaches to 2^10
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 struct Path {
   vec3 origin, direction, weight;
@@ -86,14 +87,11 @@ class Whitted {
       : scene_(scene), options_(options), embree_(library, scene), looks_(scene), arena_(options.threads) {
     for (const scene::Light& light : scene.lights)
       lights_.push_back(vec3(embree_.space().local(light.position)));
-    const scene::Camera& c = *scene.camera;
-    const dvec3 forward = glm::normalize(c.at - c.from);
-    const dvec3 right = glm::normalize(glm::cross(forward, c.up));
-    const double half = std::tan(c.vertical_fov / 2);
-    eye_ = vec3(embree_.space().local(c.from));
-    forward_ = vec3(forward);
-    right_ = vec3(right * (half * options.width / options.height));
-    up_ = vec3(glm::cross(right, forward) * half);
+    const CameraBasis view(*scene.camera);
+    eye_ = vec3(embree_.space().local(scene.camera->from));
+    forward_ = vec3(view.forward);
+    right_ = vec3(view.right * (view.half_height * options.width / options.height));
+    up_ = vec3(view.up * view.half_height);
   }
 
   EmbreePicture render() {
@@ -137,38 +135,21 @@ class Whitted {
             static_cast<std::uint32_t>(y * options_.width + x)};
   }
 
-  static void set_ray(Rays<16>& rays, unsigned lane, const vec3& origin, const vec3& direction, float near,
-                      float far) {
-    for (int k = 0; k < 3; ++k) rays.origin[k][lane] = origin[k], rays.direction[k][lane] = direction[k];
-    rays.t_near[lane] = near;
-    rays.t_far[lane] = far;
-    rays.time[lane] = 0;
-    rays.mask[lane] = ~0u;
-    rays.id[lane] = rays.flags[lane] = 0;
-  }
-
   void trace(Bench& bench, int depth, std::vector<vec3>& rgb) {
     Query query(embree_.library(), depth == 1);
     bench.n_rays += bench.now.size();
-    for (std::size_t at = 0; at < bench.now.size(); at += 16) {
-      const auto n = static_cast<unsigned>(std::min<std::size_t>(16, bench.now.size() - at));
-      RayHits<16> packed;
-      alignas(64) int valid[16];
-      for (unsigned lane = 0; lane < 16; ++lane) {
-        const Path& path = bench.now[at + std::min(lane, n - 1)];
-        valid[lane] = lane < n ? -1 : 0;
-        set_ray(packed.ray, lane, path.origin, path.direction, depth == 1 ? 0 : kOff, kInfinity);
-        packed.hit.geometry[lane] = packed.hit.instance[lane] = kNone;
-      }
-      query.trace(embree_.get(false), valid, &packed);
-      for (unsigned lane = 0; lane < n; ++lane) {
-        const Path& path = bench.now[at + lane];
-        if (packed.hit.geometry[lane] == kNone)
-          rgb[path.pixel] += path.weight * scene_.background;
-        else
-          shade(path, surface(path, packed, lane), depth, bench, rgb);
-      }
-    }
+    const auto put = [&](Rays<16>& rays, unsigned lane, std::size_t i) {
+      const Path& path = bench.now[i];
+      put_ray(rays, lane, &path.origin.x, &path.direction.x, depth == 1 ? 0 : kOff);
+    };
+    const auto take = [&](const RayHits<16>& packed, unsigned lane, std::size_t i) {
+      const Path& path = bench.now[i];
+      if (packed.hit.geometry[lane] == kNone)
+        rgb[path.pixel] += path.weight * scene_.background;
+      else
+        shade(path, surface(path, packed, lane), depth, bench, rgb);
+    };
+    trace_rays<16, false>(embree_.get(false), query, 0, bench.now.size(), put, take);
   }
 
   Surface surface(const Path& path, const RayHits<16>& packed, unsigned lane) const {
@@ -246,19 +227,13 @@ class Whitted {
   void add_lit(const std::vector<ShadowRay>& rays, Bench& bench, std::vector<vec3>& rgb) const {
     Query query(embree_.library(), true);
     bench.n_rays += rays.size();
-    for (std::size_t at = 0; at < rays.size(); at += 16) {
-      const auto n = static_cast<unsigned>(std::min<std::size_t>(16, rays.size() - at));
-      Rays<16> packed;
-      alignas(64) int valid[16];
-      for (unsigned lane = 0; lane < 16; ++lane) {
-        const ShadowRay& ray = rays[at + std::min(lane, n - 1)];
-        valid[lane] = lane < n ? -1 : 0;
-        set_ray(packed, lane, ray.origin, ray.direction, kOff, ray.distance);
-      }
-      query.trace(embree_.get(false), valid, &packed);
-      for (unsigned lane = 0; lane < n; ++lane)
-        if (packed.t_far[lane] >= 0) rgb[rays[at + lane].pixel] += rays[at + lane].color;
-    }
+    const auto put = [&](Rays<16>& packed, unsigned lane, std::size_t i) {
+      put_ray(packed, lane, &rays[i].origin.x, &rays[i].direction.x, kOff, rays[i].distance);
+    };
+    const auto take = [&](const Rays<16>& packed, unsigned lane, std::size_t i) {
+      if (packed.t_far[lane] >= 0) rgb[rays[i].pixel] += rays[i].color;
+    };
+    trace_rays<16, true>(embree_.get(false), query, 0, rays.size(), put, take);
   }
 
   const scene::Scene& scene_;

@@ -1,15 +1,9 @@
 #include "bench/frames/bench.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 #include <memory>
-#include <nlohmann/json.hpp>
 
-#include "api/statistics_json.h"
-#include "bench/embree/whitted.h"
-#include "bench/measure/cores.h"
+#include "bench/embree/embree.h"
 #include "bench/povray/povray.h"
 #include "bench/workload/scenes.h"
 #include "kdray/kdray.h"
@@ -41,11 +35,9 @@ class FrameBench {
  public:
   FrameBench(const FramesOptions& options, const std::string& name)
       : options_(options), name_(name), scene_(load_scene(name)) {
-    DeviceOptions device;
-    device.device = options.device;
-    renderer_ = std::make_unique<Renderer>(scene_, TreeOptions{.binary_form = false}, device);
-    facts_ = api::device_json(renderer_->statistics());
-    cores_ = cores_of(facts_);
+    renderer_ = std::make_unique<Renderer>(scene_, TreeOptions{.binary_form = false},
+                                           DeviceOptions{.device = options.device});
+    machine_ = machine_of(renderer_->statistics());
     if (!is_nff(name)) return;
     if (options.embree) make_embree();
     if (has_povray())
@@ -60,17 +52,15 @@ class FrameBench {
 
  private:
   RenderOptions render_options() const {
-    RenderOptions o;
-    o.width = options_.width, o.height = options_.height, o.depth = options_.depth;
-    return o;
+    return {.width = options_.width, .height = options_.height, .depth = options_.depth};
   }
 
   // A frame of kdray's tells from which weight on it makes rays.
   void make_embree() {
     renderer_->render(render_options());
     const float threshold = renderer_->statistics().frame->spawn_threshold;
-    embree_ =
-        embree_frames(scene_.model(), {options_.width, options_.height, options_.depth, threshold, cores_});
+    embree_ = embree_frames(scene_.model(),
+                            {options_.width, options_.height, options_.depth, threshold, machine_.cores});
     embree_seconds_.resize(embree_.size());
     n_embree_rays_.resize(embree_.size());
   }
@@ -85,11 +75,11 @@ class FrameBench {
       n_embree_rays_[i] = picture.n_rays;
     }
     const bool with_povray = povray_ && round < kPovrayRounds;
-    const double povray = with_povray ? povray_->trace_seconds(cores_) : 0;
+    const double povray = with_povray ? povray_->trace_seconds(machine_.cores) : 0;
     if (round < 0) return;
     for (const auto& [stage, seconds] : times_of_frame(statistics.seconds))
       seconds_[stage].push_back(seconds);
-    rays_ = api::statistics_json(statistics).at("rays");
+    rays_ = rays_by_kind(statistics);
     if (with_povray) povray_seconds_.push_back(povray);
   }
 
@@ -98,13 +88,11 @@ class FrameBench {
     FrameResult r;
     r.scene = name_;
     r.n_primitives = kind_counts(model);
-    r.cores = cores_;
-    r.device = facts_.at("name");
+    r.machine = machine_;
+    r.rays = rays_;
     r.seconds = spread_of(seconds_.at("render"));
     for (const auto& [stage, seconds] : seconds_)
       if (stage != "render") r.stages.emplace_back(stage, spread_of(seconds));
-    for (const char* const kind : {"primary", "shadow", "reflected", "refracted", "total"})
-      r.rays[kind] = rays_.at(kind);
     for (std::size_t i = 0; i < embree_.size(); ++i)
       r.embree.push_back({embree_[i].name, spread_of(embree_seconds_[i]), n_embree_rays_[i]});
     if (povray_) r.povray_seconds = spread_of(povray_seconds_);
@@ -115,8 +103,8 @@ class FrameBench {
   std::string name_;
   Scene scene_;
   std::unique_ptr<Renderer> renderer_;
-  nlohmann::json facts_, rays_;
-  int cores_ = 0;
+  Machine machine_;
+  std::map<std::string, std::uint64_t> rays_;
   std::vector<EmbreeFrames> embree_;
   std::vector<std::vector<double>> embree_seconds_;
   std::vector<std::uint64_t> n_embree_rays_;
@@ -133,16 +121,8 @@ const EmbreeFrame* FrameResult::fastest_embree() const {
   return found == embree.end() ? nullptr : &*found;
 }
 
-std::vector<FrameResult> bench_frames(const FramesOptions& options,
-                                      const std::function<void(const FrameResult&)>& done,
-                                      const std::function<void(const std::string&)>& working) {
-  std::vector<FrameResult> results;
-  for (const std::string& name : options.scenes) {
-    working(name);
-    results.push_back(FrameBench(options, name).run());
-    done(results.back());
-  }
-  return results;
+std::vector<FrameResult> bench_frames(const FramesOptions& options, const Progress<FrameResult>& progress) {
+  return run_scenes<FrameBench>(options, progress);
 }
 
 }  // namespace kdray::bench

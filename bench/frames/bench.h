@@ -1,18 +1,16 @@
 // What    `kdray bench frames`: whole frames, scene by scene, with the time of each stage; beside them, of
-//         NFF scenes, the same picture by POV-Ray and by a renderer on Embree (bench/embree/whitted.h).
+//         NFF scenes, the same picture by POV-Ray and by a renderer on Embree (bench/embree/whitted.cpp).
 // Shape   Interleaved: a round is a frame of kdray's, one by each Embree, a picture of POV-Ray's (in the
 //         first three rounds, since it takes so much longer). One of each before that is not counted.
 #pragma once
 
-#include <functional>
 #include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "bench/measure/json.h"
-#include "bench/measure/spread.h"
+#include "bench/measure/progress.h"
 #include "bench/workload/kinds.h"
 
 namespace kdray::bench {
@@ -34,8 +32,7 @@ struct EmbreeFrame {
 struct FrameResult {
   std::string scene;
   KindCounts n_primitives;
-  int cores = 0;
-  std::string device;
+  Machine machine;
   Spread seconds;                                      // seconds.render
   std::vector<std::pair<std::string, Spread>> stages;  // device seconds by stage
   std::map<std::string, std::uint64_t> rays;           // by kind, and "total"
@@ -46,9 +43,7 @@ struct FrameResult {
   std::size_t n_rays() const { return rays.at("total"); }
 };
 
-std::vector<FrameResult> bench_frames(const FramesOptions& options,
-                                      const std::function<void(const FrameResult&)>& done,
-                                      const std::function<void(const std::string&)>& working);
+std::vector<FrameResult> bench_frames(const FramesOptions& options, const Progress<FrameResult>& progress);
 
 // The results for people (a table) and for programs (JSON: docs/bench.md has its keys), in report.cpp.
 

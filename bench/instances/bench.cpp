@@ -2,18 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <memory>
-#include <nlohmann/json.hpp>
 
-#include "api/statistics_json.h"
 #include "bench/embree/embree.h"
-#include "bench/measure/cores.h"
-#include "bench/race/compare_hits.h"
-#include "bench/race/kdray_contestants.h"
-#include "bench/workload/flock.h"
+#include "bench/race/compare.h"
+#include "bench/race/race.h"
 #include "bench/workload/scenes.h"
 #include "scene/generate/built_in.h"
 #include "scene/generate/displaced_sphere.h"
@@ -53,9 +46,7 @@ struct Form {
   EmbreeScenes embree;
 
   Form(scene::Scene model, const InstancesOptions& o) : scene(std::move(model)) {
-    DeviceOptions device;
-    device.device = o.device;
-    device.compute_units = o.cores;
+    const DeviceOptions device{.device = o.device, .compute_units = o.cores};
     renderer = std::make_shared<Renderer>(scene, TreeOptions{.binary_form = false}, device);
     if (o.embree) embree = make_embree_scenes(scene.model());
   }
@@ -70,7 +61,7 @@ struct Form {
   std::vector<Hit> hits(const RayClass& c, const std::string& traversal) const {
     return renderer->trace(c.rays, c.any_hit, 1, traversal_of(traversal));
   }
-  nlohmann::json statistics() const { return api::statistics_json(renderer->statistics()); }
+  std::uint64_t bytes() const { return renderer->statistics().memory.scene_bytes; }
 };
 
 class Flock {
@@ -80,17 +71,19 @@ class Flock {
         instances_(std::move(flock), options),
         copies_(with_copies(instances_.scene.model()), options) {
     const scene::Scene& model = instances_.scene.model();
-    run_.mesh = model.name;
-    run_.apart = apart;
-    run_.n_instances = model.instances.size();
-    run_.n_triangles = model.meshes[0]->triangles.size();
+    run_ = {.mesh = model.name,
+            .apart = apart,
+            .n_instances = model.instances.size(),
+            .n_triangles = model.meshes[0]->triangles.size(),
+            .instances_bytes = instances_.bytes(),
+            .copies_bytes = copies_.bytes(),
+            .machine = machine_of(instances_.renderer->statistics()),
+            .classes = {}};
   }
 
-  InstancesRun run(const std::function<void(const std::string&)>& working) {
-    describe();
+  InstancesRun run(const Working& working) {
     const std::vector<RayClass> classes = make_classes(
-        copies_.scene.model(), options_.classes,
-        std::max(1, static_cast<int>(std::sqrt(static_cast<double>(options_.rays)))),
+        copies_.scene.model(), options_.classes, side_of(options_.rays),
         [&](std::span<const Ray> rays) { return copies_.renderer->trace(rays, false, 1, Traversal::wide); });
     for (const RayClass& c : classes) {
       working(fmt::format("{}, {} apart: {}", run_.mesh, run_.apart, c.name));
@@ -100,27 +93,16 @@ class Flock {
   }
 
  private:
-  void describe() {
-    const nlohmann::json kept = instances_.statistics(), flat = copies_.statistics();
-    const nlohmann::json& device = kept.at("device");
-    run_.cores = cores_of(device);
-    run_.device = device.at("name");
-    run_.vectors = device.value("vectors", "");
-    run_.instances_bytes = kept.at("memory").at("scene_bytes");
-    run_.copies_bytes = flat.at("memory").at("scene_bytes");
-  }
-
   // Both forms' contestants take turns; each form's hits are held against those of its first walk.
   InstancesClass race_on(const RayClass& c) const {
     InstancesClass result{c.name, c.any_hit, c.rays.size(), 0, 0, {}};
     if (c.rays.empty()) return result;
     const std::string& first = options_.traversals.front();
     const std::vector<Hit> of_instances = instances_.hits(c, first), of_copies = copies_.hits(c, first);
-    result.n_hits = static_cast<std::size_t>(
-        std::ranges::count_if(of_instances, [](const Hit& h) { return std::isfinite(h.t); }));
+    result.n_hits = count_hits(of_instances);
     result.differing_share = differing_distances(of_instances, of_copies);
-    std::vector<Contestant> kept = instances_.contestants(options_, run_.cores),
-                            flat = copies_.contestants(options_, run_.cores), all;
+    std::vector<Contestant> kept = instances_.contestants(options_, run_.machine.cores),
+                            flat = copies_.contestants(options_, run_.machine.cores), all;
     for (std::size_t i = 0; i < kept.size(); ++i) {
       kept[i].reference = of_instances, flat[i].reference = of_copies;
       all.push_back(std::move(kept[i]));
@@ -147,28 +129,27 @@ std::vector<std::string_view> instance_traversals() {
 }
 
 std::vector<InstancesRun> bench_instances(const InstancesOptions& options,
-                                          const std::function<void(const InstancesRun&)>& done,
-                                          const std::function<void(const std::string&)>& working) {
+                                          const Progress<InstancesRun>& progress) {
   const InstancesOptions o = resolved(options);
   std::vector<InstancesRun> runs;
   for (const std::string& name : o.meshes) {
     const scene::Scene mesh = load_mesh(name);
     for (const double apart : o.apart) {
       scene::Scene flock = flock_of(mesh, o.across, apart);
-      working(fmt::format("{}, {} apart: building trees", name, apart));
-      runs.push_back(Flock(o, std::move(flock), apart).run(working));
-      done(runs.back());
+      progress.working(fmt::format("{}, {} apart: building trees", name, apart));
+      runs.push_back(Flock(o, std::move(flock), apart).run(progress.working));
+      progress.done(runs.back());
     }
   }
   return runs;
 }
 
 std::size_t count_not_identical(std::span<const InstancesRun> runs) {
-  std::size_t n = 0;
-  for (const InstancesRun& run : runs)
-    for (const InstancesClass& c : run.classes)
-      for (const Pair& p : c.pairs) n += p.instances.n_not_identical + p.copies.n_not_identical;
-  return n;
+  return count_over(runs, [](const InstancesRun& run) {
+    return count_over(run.classes, [](const InstancesClass& c) {
+      return count_over(c.pairs, [](const Pair& p) { return p.n_not_identical(); });
+    });
+  });
 }
 
 double times_copies(const InstancesClass& c, Family family) {

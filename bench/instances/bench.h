@@ -4,12 +4,11 @@
 //         thrown.
 #pragma once
 
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "bench/measure/json.h"
+#include "bench/measure/progress.h"
 #include "bench/race/race.h"
 
 namespace kdray::bench {
@@ -33,6 +32,9 @@ std::vector<std::string_view> instance_traversals();
 // One walk or mode, through both forms.
 struct Pair {
   Outcome instances, copies;
+
+  std::size_t n_not_identical() const { return instances.n_not_identical + copies.n_not_identical; }
+  double times() const { return instances.seconds.median / copies.seconds.median; }
 };
 
 struct InstancesClass {
@@ -49,14 +51,12 @@ struct InstancesRun {
   double apart = 0;
   std::size_t n_instances = 0, n_triangles = 0;         // of the mesh
   std::uint64_t instances_bytes = 0, copies_bytes = 0;  // of kdray's scenes on the device
-  int cores = 0;
-  std::string device, vectors;
+  Machine machine;
   std::vector<InstancesClass> classes;
 };
 
 std::vector<InstancesRun> bench_instances(const InstancesOptions& options,
-                                          const std::function<void(const InstancesRun&)>& done,
-                                          const std::function<void(const std::string&)>& working);
+                                          const Progress<InstancesRun>& progress);
 
 // Hits that were not those of the form's first walk, over all runs.
 std::size_t count_not_identical(std::span<const InstancesRun> runs);

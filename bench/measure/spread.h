@@ -1,6 +1,7 @@
 // What    What is said of repeated measurements: the median, and how far they spread.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 namespace kdray::bench {

@@ -7,34 +7,19 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <ctime>
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
-#include "base/timer.h"
+#include "bench/measure/stopwatch.h"
+#include "bench/workload/arrays.h"
 #include "kdray/kdray.h"
 #include "scene/generate/displaced_sphere.h"
-#include "scene/model/scene.h"
 
 namespace kdray {
 namespace {
 
-struct Arrays {
-  std::vector<double> vertices;
-  std::vector<std::uint32_t> triangles;
-};
-
-Arrays sphere(std::uint32_t n) {
-  const scene::Scene scene = generate::displaced_sphere(n);
-  Arrays arrays;
-  for (const dvec3& v : scene.vertices) arrays.vertices.insert(arrays.vertices.end(), {v.x, v.y, v.z});
-  for (const scene::Triangle& t : scene.triangles)
-    arrays.triangles.insert(arrays.triangles.end(), t.vertex.begin(), t.vertex.end());
-  return arrays;
-}
-
 // A mesh of radius 1, so a tenth of its size is 0.2. It is turned first, about the diagonal.
-std::vector<double> bent(const std::vector<double>& from, double by, double degrees, double phase) {
+std::vector<double> bent(const std::vector<float>& from, double by, double degrees, double phase) {
   const dmat4 turn = glm::rotate(dmat4(1), glm::radians(degrees), glm::normalize(dvec3(1, 1, 1)));
   std::vector<double> vertices;
   for (std::size_t i = 0; i < from.size(); i += 3) {
@@ -49,21 +34,13 @@ std::vector<double> bent(const std::vector<double>& from, double by, double degr
   return moved;
 }
 
-// Wall time, and the processor's of all threads, which tells more where others are at work.
 struct Seconds {
   std::vector<double> wall, processor;
-};
 
-class Stopwatch {
- public:
-  void add_to(Seconds& seconds) const {
-    seconds.wall.push_back(timer_.seconds());
-    seconds.processor.push_back(static_cast<double>(std::clock() - clock_) / CLOCKS_PER_SEC);
+  void add(const bench::Stopwatch& watch) {
+    wall.push_back(watch.wall());
+    processor.push_back(watch.cpu());
   }
-
- private:
-  Timer timer_;
-  std::clock_t clock_ = std::clock();
 };
 
 struct Side {
@@ -75,9 +52,9 @@ struct Side {
   void ask(const Rays& rays, Seconds& seconds) {
     t.resize(rays.origins.size());
     primitive.resize(t.size());
-    const Stopwatch watch;
+    const bench::Stopwatch watch;
     scene.closest(rays, {.t = t, .primitive = primitive});
-    watch.add_to(seconds);
+    seconds.add(watch);
   }
 };
 
@@ -118,7 +95,7 @@ std::string row(const char* what, const Seconds& built, const Seconds& refitted)
 }
 
 int run(std::uint32_t n, int rounds, std::size_t n_rays, double by, double degrees) {
-  const Arrays mesh = sphere(n);
+  const bench::MeshArrays mesh = bench::mesh_of(generate::displaced_sphere(n), "sphere");
   Side built, refitted;
   for (Side* side : {&built, &refitted}) {
     side->scene.add_mesh({mesh.vertices, mesh.triangles});
@@ -127,25 +104,27 @@ int run(std::uint32_t n, int rounds, std::size_t n_rays, double by, double degre
   const RaySet random = random_rays(n_rays), picture = picture_rays(n_rays);
   fmt::print("{} triangles, bent by {}, turned by {} degrees\n", mesh.triangles.size() / 3, by, degrees);
   std::size_t differ = 0;
+  const auto compare = [&] {
+    for (std::size_t i = 0; i < built.t.size(); ++i)
+      differ += built.t[i] != refitted.t[i] || built.primitive[i] != refitted.primitive[i];
+  };
   double growth = 0, first = 0;
   for (int round = -1; round < rounds; ++round) {
     const std::vector<double> moved = bent(mesh.vertices, by, degrees, 0.7 * round);
     for (Side* side : {&built, &refitted}) {
-      const Stopwatch watch;
+      const bench::Stopwatch watch;
       side->scene.update_vertices(0, moved);
       const CommitReport report = side->scene.commit({.refit_growth = side == &built ? 0.0 : 100.0});
-      watch.add_to(side->commit);
+      side->commit.add(watch);
       if (side == &refitted) growth = std::max(growth, report.growth);
     }
     if (round < 0) first = refitted.commit.wall.front();
     Seconds warm;
     for (Side* side : {&built, &refitted}) side->ask(picture.rays(), warm);
     for (Side* side : {&built, &refitted}) side->ask(random.rays(), side->random);
-    for (std::size_t i = 0; i < n_rays; ++i)
-      differ += built.t[i] != refitted.t[i] || built.primitive[i] != refitted.primitive[i];
+    compare();
     for (Side* side : {&built, &refitted}) side->ask(picture.rays(), side->coherent);
-    for (std::size_t i = 0; i < built.t.size(); ++i)
-      differ += built.t[i] != refitted.t[i] || built.primitive[i] != refitted.primitive[i];
+    compare();
     if (round < 0)
       for (Side* side : {&built, &refitted}) side->commit = {}, side->random = {}, side->coherent = {};
   }

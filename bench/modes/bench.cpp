@@ -4,11 +4,8 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "accel/prepare/prepared.h"
-#include "api/statistics_json.h"
-#include "bench/measure/cores.h"
 #include "bench/workload/scenes.h"
 
 namespace kdray::bench {
@@ -17,28 +14,6 @@ namespace {
 
 const Scheme kSequential{"sequential"};
 const Scheme kWholeDevice{"one queue, all cores", Mode::pdprt, Division::bag, Balance::pilot, true};
-
-// The number at a path of keys, where there is one.
-std::optional<double> number_at(const nlohmann::json& json, const std::string& path) {
-  const nlohmann::json::json_pointer pointer(path);
-  if (!json.contains(pointer) || !json.at(pointer).is_number()) return std::nullopt;
-  return json.at(pointer).get<double>();
-}
-
-// The numbers that the entries of a list have under a key.
-std::vector<double> numbers_of(const nlohmann::json& json, const std::string& path, const std::string& key) {
-  std::vector<double> found;
-  const nlohmann::json::json_pointer pointer(path);
-  if (!json.contains(pointer)) return found;
-  for (const nlohmann::json& entry : json.at(pointer))
-    if (const auto number = number_at(entry, "/" + key)) found.push_back(*number);
-  return found;
-}
-
-std::optional<double> largest(const std::vector<double>& values) {
-  if (values.empty()) return std::nullopt;
-  return *std::max_element(values.begin(), values.end());
-}
 
 // A row being measured.
 class Runner {
@@ -59,7 +34,7 @@ class Runner {
       Picture picture = renderer_->render(options);
       if (first) row_.differing_pixels += differing_pixels(*first, picture);
       if (!first) first = std::move(picture);
-      if (counts) record(api::statistics_json(renderer_->statistics()));
+      if (counts) record(renderer_->statistics());
     } catch (const Error& error) {
       fail(error.what());
     }
@@ -90,21 +65,28 @@ class Runner {
     renderer_.reset();
   }
 
-  void record(const nlohmann::json& statistics) {
-    row_.rounds.push_back(statistics.at("seconds").at("render"));
-    if (const auto n = number_at(statistics, "/mode/sub_devices"))
-      row_.sub_devices = std::min(row_.queues, static_cast<int>(*n));
-    const auto idle = numbers_of(statistics, "/mode/per_queue", "idle_share");
-    if (!idle.empty()) idle_.push_back(sum(idle) / static_cast<double>(idle.size()));
-    const auto busy = numbers_of(statistics, "/mode/per_queue", "busy_seconds");
-    if (!busy.empty()) busy_.push_back(sum(busy));
-    row_.rays_exchanged = number_at(statistics, "/mode/exchange/rays_total");
-    row_.bytes_exchanged = number_at(statistics, "/mode/exchange/bytes_total");
-    row_.geometry_bytes = largest(numbers_of(statistics, "/memory/per_queue", "geometry_bytes"));
-    row_.work_bytes = largest(numbers_of(statistics, "/memory/per_queue", "work_bytes"));
-    auto whole = number_at(statistics, "/mode/whole_geometry_bytes");  // ODPRT has no use for the binary tree
-    if (!whole) whole = number_at(statistics, "/memory/scene_bytes");
-    if (row_.geometry_bytes && whole.value_or(0) > 0) row_.geometry_share = *row_.geometry_bytes / *whole;
+  void record(const Statistics& s) {
+    const Statistics::Division& division = s.mode.division.value();
+    row_.rounds.push_back(s.seconds.render);
+    row_.sub_devices = std::min(row_.queues, static_cast<int>(division.sub_devices));
+    double idle = 0, busy = 0;
+    for (const Statistics::Queue& q : division.per_queue) idle += q.idle_share, busy += q.busy_seconds;
+    if (const std::size_t n = division.per_queue.size(); n > 0)
+      idle_.push_back(idle / static_cast<double>(n)), busy_.push_back(busy);
+    auto whole = static_cast<double>(s.memory.scene_bytes);
+    if (division.odprt) {
+      row_.rays_exchanged = static_cast<double>(division.odprt->rays_total);
+      row_.bytes_exchanged = static_cast<double>(division.odprt->bytes_total);
+      whole = static_cast<double>(division.odprt->whole_geometry_bytes);  // without the binary tree
+    }
+    double geometry = 0, work = 0;
+    for (const Statistics::QueueMemory& q : s.memory.per_queue) {
+      geometry = std::max(geometry, static_cast<double>(q.geometry_bytes));
+      work = std::max(work, static_cast<double>(q.work_bytes));
+    }
+    if (s.memory.per_queue.empty()) return;
+    row_.geometry_bytes = geometry, row_.work_bytes = work;
+    if (whole > 0) row_.geometry_share = geometry / whole;
   }
 
   const PreparedScene& scene_;
@@ -120,13 +102,11 @@ class ModesScene {
   ModesScene(const ModesOptions& options, const std::string& name)
       : options_(options), scene_(load_scene(name)), prepared_(scene_, {.binary_form = false}) {
     Renderer renderer(prepared_, {.device = options.device});
-    const nlohmann::json facts = api::statistics_json(renderer.statistics());
     run_.scene = name;
-    run_.device = facts.at("device").at("name");
     run_.n_primitives = scene_.primitives();
-    run_.scene_bytes = number_at(facts, "/memory/scene_bytes").value_or(0);
-    run_.cores = cores_of(facts.at("device"));
-    divisible_ = facts.at("device").at("kind") == "cpu";
+    run_.machine = machine_of(renderer.statistics());
+    run_.scene_bytes = renderer.statistics().memory.scene_bytes;
+    divisible_ = renderer.statistics().device.kind == "cpu";
   }
 
   ModesRun run() {
@@ -148,25 +128,23 @@ class ModesScene {
  private:
   // A device with as many cores as queues, where it has them.
   DeviceOptions device(int queues, bool whole) const {
-    const int cores = !whole && divisible_ && queues < run_.cores ? queues : 0;
+    const int cores = !whole && divisible_ && queues < run_.machine.cores ? queues : 0;
     return {.device = options_.device, .queues = queues, .compute_units = cores};
   }
 
   RenderOptions frame() const {
-    RenderOptions o;
-    o.width = options_.width, o.height = options_.height, o.depth = options_.depth;
-    return o;
+    return {.width = options_.width, .height = options_.height, .depth = options_.depth};
   }
 
   int most_queues_with_cores() const {
     int most = 0;
     for (const int queues : options_.queues)
-      if (queues <= run_.cores) most = std::max(most, queues);
+      if (queues <= run_.machine.cores) most = std::max(most, queues);
     return most;
   }
 
   void add(const Scheme& scheme, int queues) {
-    runners_.emplace_back(prepared_, scheme, queues, divisible_ ? run_.cores : queues,
+    runners_.emplace_back(prepared_, scheme, queues, divisible_ ? run_.machine.cores : queues,
                           device(queues, scheme.whole_device));
   }
 
@@ -230,23 +208,14 @@ std::optional<double> ModesRun::speed_up(const ModesRow& row) const {
   return rows.front().seconds.median / row.seconds.median;
 }
 
-std::vector<ModesRun> bench_modes(const ModesOptions& options,
-                                  const std::function<void(const ModesRun&)>& done,
-                                  const std::function<void(const std::string&)>& working) {
-  std::vector<ModesRun> runs;
-  for (const std::string& name : options.scenes) {
-    working(name);
-    runs.push_back(ModesScene(options, name).run());
-    done(runs.back());
-  }
-  return runs;
+std::vector<ModesRun> bench_modes(const ModesOptions& options, const Progress<ModesRun>& progress) {
+  return run_scenes<ModesScene>(options, progress);
 }
 
 std::size_t count_differing_pixels(std::span<const ModesRun> runs) {
-  std::size_t n = 0;
-  for (const ModesRun& run : runs)
-    for (const ModesRow& row : run.rows) n += row.differing_pixels;
-  return n;
+  return count_over(runs, [](const ModesRun& run) {
+    return count_over(run.rows, [](const ModesRow& row) { return row.differing_pixels; });
+  });
 }
 
 std::size_t differing_pixels(const Picture& a, const Picture& b) {

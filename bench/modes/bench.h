@@ -8,14 +8,13 @@
 //         the bits of the first row's are counted, not thrown.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "bench/measure/json.h"
-#include "bench/measure/spread.h"
+#include "bench/measure/progress.h"
+#include "bench/measure/report.h"
 #include "bench/modes/model.h"
 #include "kdray/kdray.h"
 
@@ -63,10 +62,10 @@ struct ModesRow {
 };
 
 struct ModesRun {
-  std::string scene, device;
+  std::string scene;
   std::size_t n_primitives = 0;
-  int cores = 1;
-  double scene_bytes = 0;
+  Machine machine;
+  std::uint64_t scene_bytes = 0;
   std::vector<ModesRow> rows;  // [0] is the one core alone
   std::optional<Model> model;
   std::string model_failure;  // why there is none
@@ -76,9 +75,7 @@ struct ModesRun {
   std::optional<double> speed_up(const ModesRow& row) const;
 };
 
-std::vector<ModesRun> bench_modes(const ModesOptions& options,
-                                  const std::function<void(const ModesRun&)>& done,
-                                  const std::function<void(const std::string&)>& working);
+std::vector<ModesRun> bench_modes(const ModesOptions& options, const Progress<ModesRun>& progress);
 
 std::size_t count_differing_pixels(std::span<const ModesRun> runs);
 

@@ -147,18 +147,4 @@ Simulated simulate(const Traffic& traffic, std::uint32_t n_queues, const Network
   return outcome;
 }
 
-std::vector<double> exchange_matrix(const Traffic& traffic, std::uint32_t n_queues) {
-  std::vector<double> sent(std::size_t{n_queues} * n_queues);
-  const auto count = [&](std::uint32_t from, std::uint32_t to) {
-    if (from != to) sent[std::size_t{from} * n_queues + to] += traffic.rays_per_journey;
-  };
-  for (const Journey& journey : traffic.journeys) {
-    for (std::size_t i = 1; i < journey.hops.size(); ++i)
-      count(journey.hops[i - 1].queue, journey.hops[i].queue);
-    for (const std::uint32_t next : journey.next)
-      count(journey.hops.back().queue, traffic.journeys[next].hops.front().queue);
-  }
-  return sent;
-}
-
 }  // namespace kdray::bench

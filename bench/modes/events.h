@@ -51,7 +51,4 @@ struct Simulated {
 
 Simulated simulate(const Traffic& traffic, std::uint32_t n_queues, const Network& network);
 
-// Rays that each queue sends to each other, [from * n_queues + to].
-std::vector<double> exchange_matrix(const Traffic& traffic, std::uint32_t n_queues);
-
 }  // namespace kdray::bench

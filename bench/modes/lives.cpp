@@ -4,31 +4,14 @@
 #include <cmath>
 #include <limits>
 
-#include "bench/workload/surfaces.h"
-
 namespace kdray::bench {
 
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-dvec3 double_of(const float (&v)[3]) {
-  return {v[0], v[1], v[2]};
-}
-
 double largest(const vec3& v) {
   return std::max({v.x, v.y, v.z});
-}
-
-Ray make_ray(const dvec3& origin, const dvec3& direction, double t_min, double t_max) {
-  Ray ray{};
-  for (int k = 0; k < 3; ++k) {
-    ray.origin[k] = static_cast<float>(origin[k]);
-    ray.direction[k] = static_cast<float>(direction[k]);
-  }
-  ray.t_min = static_cast<float>(t_min);
-  ray.t_max = static_cast<float>(t_max);
-  return ray;
 }
 
 // What a ray carries besides its place in the tree of lives.
@@ -40,16 +23,7 @@ struct Bearing {
 class Making {
  public:
   Making(const scene::Scene& scene, const LifeOptions& options, const Tracer& trace)
-      : scene_(scene),
-        options_(options),
-        trace_(trace),
-        surfaces_(scene),
-        offset_(offset_of(scene)),
-        materials_(scene.primitive_count()) {
-    primitives::for_each_kind([&](auto kind) {
-      for (const auto& p : decltype(kind)::of(scene)) materials_[p.number] = p.material;
-    });
-  }
+      : scene_(scene), options_(options), trace_(trace), surfaces_(scene), offset_(offset_of(scene)) {}
 
   std::vector<LifeRay> make() {
     look();
@@ -67,18 +41,14 @@ class Making {
   // The eye rays, line by line.
   void look() {
     const scene::Camera camera = scene_.camera.value_or(scene::Camera{});
-    const dvec3 forward = glm::normalize(camera.at - camera.from);
-    const dvec3 right = glm::normalize(glm::cross(forward, camera.up));
-    const dvec3 up = glm::cross(right, forward);
-    const double scale = std::tan(camera.vertical_fov / 2), height = options_.height;
+    const CameraBasis view(camera);
+    const double scale = view.half_height, height = options_.height;
     for (int y = 0; y < options_.height; ++y)
       for (int x = 0; x < options_.width; ++x) {
         const double across = scale * (2 * (x + 0.5) - options_.width) / height;
         const double above = scale * (1 - 2 * (y + 0.5) / height);
-        const dvec3 along = forward + right * across + up * above;
-        const double length = glm::length(along);
-        put(make_ray(camera.from, along / length, camera.hither * length, kInfinity), kNoParent, 1,
-            LifeKind::primary, {});
+        const dvec3 along = view.forward + view.right * across + view.up * above;
+        put(make_ray(camera.from, along, kInfinity, camera.hither), kNoParent, 1, LifeKind::primary, {});
       }
   }
 
@@ -101,12 +71,9 @@ class Making {
 
   void shade(std::size_t at, const Hit& hit) {
     const LifeRay life = lives_[at];
-    const dvec3 incoming = glm::normalize(double_of(life.ray.direction));
-    const dvec3 position = double_of(life.ray.origin) + double_of(life.ray.direction) * double{hit.t};
-    dvec3 normal = surfaces_.normal(static_cast<std::uint32_t>(hit.primitive), position);
-    if (glm::dot(normal, incoming) > 0) normal = -normal;
-    light_up(at, position + normal * offset_, normal);
-    if (life.depth < options_.depth) spawn(at, hit, position, normal, incoming);
+    const Meeting met(surfaces_, life.ray, hit);
+    light_up(at, met.position + met.normal * offset_, met.normal);
+    if (life.depth < options_.depth) spawn(at, hit, met);
   }
 
   void light_up(std::size_t at, const dvec3& from, const dvec3& normal) {
@@ -115,25 +82,24 @@ class Making {
       const dvec3 to_light = far_away ? -light.direction : light.position - from;
       const double distance = glm::length(to_light);
       if (!(glm::dot(to_light, normal) > 0) || (!far_away && distance > light.range)) continue;
-      put(make_ray(from, to_light / distance, 0, far_away ? kInfinity : distance),
-          static_cast<std::uint32_t>(at), lives_[at].depth, LifeKind::shadow, {});
+      put(make_ray(from, to_light, far_away ? kInfinity : 1), static_cast<std::uint32_t>(at),
+          lives_[at].depth, LifeKind::shadow, {});
     }
   }
 
-  void spawn(std::size_t at, const Hit& hit, const dvec3& position, const dvec3& normal,
-             const dvec3& incoming) {
-    const scene::Material& material = scene_.materials[materials_[static_cast<std::size_t>(hit.primitive)]];
+  void spawn(std::size_t at, const Hit& hit, const Meeting& met) {
+    const scene::Material& material = surfaces_.material(static_cast<std::uint32_t>(hit.primitive));
     const Bearing bearing = bearings_[at];
     const int depth = lives_[at].depth + 1;
     const auto parent = static_cast<std::uint32_t>(at);
     vec3 reflect = material.reflect;
     if (largest(material.transmit) > 0) {
       const double ratio = bearing.inside ? material.index : 1 / material.index;
-      const dvec3 refracted = glm::refract(incoming, normal, ratio);
+      const dvec3 refracted = glm::refract(met.incoming, met.normal, ratio);
       if (glm::dot(refracted, refracted) > 0.5) {
         const vec3 weight = bearing.weight * material.transmit;
         if (carries(weight))
-          put(make_ray(position - normal * offset_, refracted, 0, kInfinity), parent, depth,
+          put(make_ray(met.position - met.normal * offset_, refracted, kInfinity), parent, depth,
               LifeKind::refracted, {weight, !bearing.inside});
       } else {
         reflect += material.transmit;  // total reflection
@@ -141,8 +107,8 @@ class Making {
     }
     const vec3 weight = bearing.weight * reflect;
     if (carries(weight))
-      put(make_ray(position + normal * offset_, glm::reflect(incoming, normal), 0, kInfinity), parent, depth,
-          LifeKind::reflected, {weight, bearing.inside});
+      put(make_ray(met.position + met.normal * offset_, glm::reflect(met.incoming, met.normal), kInfinity),
+          parent, depth, LifeKind::reflected, {weight, bearing.inside});
   }
 
   bool carries(const vec3& weight) const {
@@ -154,7 +120,6 @@ class Making {
   const Tracer& trace_;
   Surfaces surfaces_;
   double offset_;
-  std::vector<std::uint32_t> materials_;  // by primitive number
   std::vector<LifeRay> lives_;
   std::vector<Bearing> bearings_;  // of each
 };

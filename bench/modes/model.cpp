@@ -7,8 +7,7 @@
 #include <limits>
 #include <numeric>
 
-#include "api/statistics_json.h"
-#include "bench/measure/spread.h"
+#include "bench/measure/report.h"
 #include "bench/modes/events.h"
 #include "bench/modes/lives.h"
 #include "bench/modes/paths.h"
@@ -64,17 +63,13 @@ class Prophet {
     frame_.timeline = true;
     frame_.tile_width = frame_.tile_height = kTile;
     renderer_.render(frame_);
-    statistics_ = api::statistics_json(renderer_.statistics());
-    const nlohmann::json& mode = statistics_.at("mode");
-    if (!mode.contains("tile_seconds") || !mode.at("tile_seconds").is_array()) return;
-    tiles_ = mode.at("tile_seconds").get<std::vector<double>>();
-    const double all = sum(tiles_);
-    if (!(all > 0)) {
-      tiles_.clear();
-      return;
-    }
-    const nlohmann::json tile = mode.value("tile", nlohmann::json::array({kTile, kTile}));
-    model_.tile_width = tile.at(0), model_.tile_height = tile.at(1);
+    statistics_ = renderer_.statistics();
+    const Statistics::Division& division = statistics_.mode.division.value();
+    const double all = sum(division.pdprt.value().tile_seconds);
+    if (!(all > 0)) return;
+    tiles_ = division.pdprt->tile_seconds;
+    model_.tile_width = static_cast<int>(division.tile_width);
+    model_.tile_height = static_cast<int>(division.tile_height);
     model_.tiles_over_sequential = all / input_.sequential_seconds;
     for (double& seconds : tiles_) seconds *= input_.sequential_seconds / all;
   }
@@ -150,7 +145,7 @@ class Prophet {
     options.width = std::clamp(static_cast<int>(std::sqrt(n * aspect)), 1, frame_.width);
     options.height = std::clamp(static_cast<int>(std::sqrt(n / aspect)), 1, frame_.height);
     options.depth = frame_.depth;
-    options.least_weight = statistics_.at("frame").value("spawn_threshold", 0.0);
+    options.least_weight = statistics_.frame->spawn_threshold;
     return make_lives(input_.scene, options,
                       [&](std::span<const Ray> rays) { return renderer_.trace(rays); });
   }
@@ -161,8 +156,9 @@ class Prophet {
   }
 
   void compare_rays(const std::vector<LifeRay>& lives) {
+    const auto measured = rays_by_kind(statistics_);
     for (const char* const kind : kKinds)
-      model_.rays.push_back({kind, 0, statistics_.at("rays").value(kind, 0.0)});
+      model_.rays.push_back({kind, 0, static_cast<double>(measured.at(kind))});
     for (const LifeRay& life : lives) ++model_.rays[static_cast<std::size_t>(life.kind)].sampled;
     for (SampledRays& rays : model_.rays) rays.sampled *= model_.rays_per_sample;
   }
@@ -174,10 +170,8 @@ class Prophet {
     double cost = 0;
     for (const Visit& v : paths_of(cut, std::vector<std::uint32_t>(cut.subtrees.size()), lives).visits)
       cost += v.cost;
-    const nlohmann::json& seconds = statistics_.at("seconds");
-    const double trace = seconds.value("trace", 0.0);
-    double all = trace;
-    for (const char* const stage : {"shade", "admit", "add"}) all += seconds.value(stage, 0.0);
+    const Statistics::Seconds& s = statistics_.seconds;
+    const double trace = s.trace, all = trace + s.shade + s.admit.value_or(0) + s.add.value_or(0);
     const double share = all > 0 && trace > 0 ? trace / all : 1;
     const double total = input_.sequential_seconds / model_.rays_per_sample;
     rates_.seconds_of_cost = share * total / std::max(cost, 1.0);
@@ -205,14 +199,13 @@ class Prophet {
     p.critical_path = outcome.critical_path;
     p.rays_sent = outcome.rays_sent, p.bytes_sent = outcome.rays_sent * options_.bytes_per_ray;
     p.largest_geometry = largest_share(cut, queue_of, n);
-    if (queues <= kMatrixMost) p.exchange = exchange_matrix(traffic, n);
   }
 
   const ModelInput& input_;
   Renderer& renderer_;
   RenderOptions frame_;
   const ModelOptions& options_;
-  nlohmann::json statistics_;  // of the frame in small tiles
+  Statistics statistics_;      // of the frame in small tiles
   std::vector<double> tiles_;  // seconds, along the curve that they come in
   Rates rates_;                // without ODPRT's own overhead
   Model model_;

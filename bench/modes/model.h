@@ -52,11 +52,8 @@ struct Prediction {
   double port_seconds = 0;   // that the busiest port is carrying
   double critical_path = 0;  // seconds
   double rays_sent = 0, bytes_sent = 0;
-  double largest_geometry = 0;        // share of the geometry that a queue holds
-  std::vector<double> exchange = {};  // rays from each to each, up to kMatrixMost queues
+  double largest_geometry = 0;  // share of the geometry that a queue holds
 };
-
-inline constexpr int kMatrixMost = 8;
 
 // Rays of a kind in the sample, times the pixels that a sample ray stands for, and in the frame.
 struct SampledRays {

@@ -5,7 +5,6 @@
 #include <map>
 #include <set>
 
-#include "bench/measure/short_name.h"
 #include "bench/modes/bench.h"
 
 namespace kdray::bench {
@@ -13,10 +12,10 @@ namespace kdray::bench {
 namespace {
 
 const std::vector<std::string> kBalances = {"odprt sah", "odprt pilot", "odprt dynamic"};
-// A column, or a dash where there is nothing to tell.
-std::string cell(const std::optional<double>& value, double factor, int decimals, int width) {
-  if (!value) return fmt::format("{:>{}}", "-", width);
-  return fmt::format("{:>{}.{}f}", *value * factor, width, decimals);
+
+std::optional<double> times(const std::optional<double>& value, double factor) {
+  if (!value) return std::nullopt;
+  return *value * factor;
 }
 
 std::optional<double> median_of(const std::optional<Spread>& spread) {
@@ -24,17 +23,13 @@ std::optional<double> median_of(const std::optional<Spread>& spread) {
   return spread->median;
 }
 
-Json json_of(const std::optional<double>& value) {
-  return value ? Json(*value) : Json();
-}
-
 std::string line_of(const ModesRun& run, const ModesRow& row) {
-  return fmt::format("  {:>6}{} {:<21}{:>9.4f}{:>9.4f}{:>9.4f}{}{}{}{}{}{}\n", row.queues,
-                     row.shares_cores() ? '*' : ' ', row.scheme, row.seconds.median, row.seconds.min,
-                     row.seconds.max, cell(run.speed_up(row), 1, 2, 10),
-                     cell(median_of(row.idle_share), 100, 1, 8), cell(row.rays_exchanged, 1e-6, 2, 9),
-                     cell(row.bytes_exchanged, 1e-6, 1, 9), cell(row.geometry_share, 100, 1, 9),
-                     cell(row.work_bytes, 1e-6, 1, 9));
+  return fmt::format(
+      "  {:>6}{} {:<21}{:>9.4f}{:>9.4f}{:>9.4f}{}{}{}{}{}{}\n", row.queues, row.shares_cores() ? '*' : ' ',
+      row.scheme, row.seconds.median, row.seconds.min, row.seconds.max, cell(run.speed_up(row), 10, 2),
+      cell(times(median_of(row.idle_share), 100), 8, 1), cell(times(row.rays_exchanged, 1e-6), 9, 2),
+      cell(times(row.bytes_exchanged, 1e-6), 9, 1), cell(times(row.geometry_share, 100), 9, 1),
+      cell(times(row.work_bytes, 1e-6), 9, 1));
 }
 
 // Rows that failed, those of one message in one line.
@@ -73,12 +68,11 @@ std::string model_table(const ModesRun& run, const ModelOptions& options) {
     const auto efficiency = [&](const char* scheme) -> std::optional<double> {
       const Prediction* const p = model.find(scheme, n);
       if (p == nullptr) return std::nullopt;
-      return p->efficiency;
+      return 100 * p->efficiency;
     };
-    out += fmt::format("  {:>7}{}{}{}{}{}", n, cell(efficiency("pdprt contiguous"), 100, 1, 12),
-                       cell(efficiency("pdprt interleaved"), 100, 1, 13),
-                       cell(efficiency("pdprt bag"), 100, 1, 8), cell(efficiency("odprt sah"), 100, 1, 12),
-                       cell(efficiency("odprt pilot"), 100, 1, 13));
+    out += fmt::format("  {:>7}{}{}{}{}{}", n, cell(efficiency("pdprt contiguous"), 12, 1),
+                       cell(efficiency("pdprt interleaved"), 13, 1), cell(efficiency("pdprt bag"), 8, 1),
+                       cell(efficiency("odprt sah"), 12, 1), cell(efficiency("odprt pilot"), 13, 1));
     if (const Prediction* const p = model.find("odprt pilot", n))
       out += fmt::format(" |{:>9.1f}{:>10.1f}{:>12.1f}{:>11.2f}{:>10.2f}", 100 * p->balance,
                          1e6 * p->port_seconds, 1e6 * p->critical_path, p->rays_sent / std::max(1.0, rays),
@@ -109,14 +103,14 @@ Json json_of(const ModesRun& run, const ModesRow& row) {
           {"failure", row.failure.empty() ? Json() : Json(row.failure)},
           {"seconds", row.rounds.empty() ? Json() : json_of(row.seconds)},
           {"rounds", row.rounds},
-          {"speed_up", json_of(run.speed_up(row))},
-          {"idle_share", row.idle_share ? json_of(*row.idle_share) : Json()},
-          {"busy_seconds", json_of(row.busy_seconds)},
-          {"rays_exchanged", json_of(row.rays_exchanged)},
-          {"bytes_exchanged", json_of(row.bytes_exchanged)},
-          {"geometry_bytes", json_of(row.geometry_bytes)},
-          {"geometry_share", json_of(row.geometry_share)},
-          {"work_bytes", json_of(row.work_bytes)},
+          {"speed_up", json_if(run.speed_up(row))},
+          {"idle_share", json_if(row.idle_share)},
+          {"busy_seconds", json_if(row.busy_seconds)},
+          {"rays_exchanged", json_if(row.rays_exchanged)},
+          {"bytes_exchanged", json_if(row.bytes_exchanged)},
+          {"geometry_bytes", json_if(row.geometry_bytes)},
+          {"geometry_share", json_if(row.geometry_share)},
+          {"work_bytes", json_if(row.work_bytes)},
           {"timeline", row.timeline.empty() ? Json() : Json::parse(row.timeline)},
           {"differing_pixels", row.differing_pixels}};
 }
@@ -134,48 +128,39 @@ Json json_of(const Prediction& p) {
     json["bytes_sent"] = p.bytes_sent;
     json["largest_geometry_share"] = p.largest_geometry;
   }
-  if (!p.exchange.empty()) {
-    const auto n = static_cast<std::size_t>(p.queues);
-    json["exchange_rays"] = Json::array();
-    for (std::size_t from = 0; from < n; ++from)
-      json["exchange_rays"].push_back(
-          std::vector<double>(p.exchange.begin() + static_cast<std::ptrdiff_t>(from * n),
-                              p.exchange.begin() + static_cast<std::ptrdiff_t>((from + 1) * n)));
-  }
   return json;
 }
 
 Json model_json(const ModesRun& run) {
   if (!run.model) return run.model_failure.empty() ? Json() : Json{{"failure", run.model_failure}};
   const Model& model = *run.model;
-  Json json = {{"simulation", true},
-               {"rays_per_sample", model.rays_per_sample},
-               {"tile", {model.tile_width, model.tile_height}},
-               {"tiles_over_sequential", model.tiles_over_sequential},
-               {"odprt_overhead", model.odprt_overhead},
-               {"odprt_overhead_measured", model.overhead_measured},
-               {"rays", Json::array()},
-               {"checks", Json::array()},
-               {"predictions", Json::array()}};
-  for (const SampledRays& r : model.rays)
-    json["rays"].push_back({{"kind", r.kind}, {"sampled", r.sampled}, {"measured", r.measured}});
-  for (const Check& c : checks_of(run))
-    json["checks"].push_back({{"scheme", c.scheme},
-                              {"queues", c.queues},
-                              {"what", c.what},
-                              {"predicted", c.predicted},
-                              {"measured", c.measured},
-                              {"error", c.error()}});
-  for (const Prediction& p : model.predictions) json["predictions"].push_back(json_of(p));
-  return json;
+  const auto rays = [](const SampledRays& r) -> Json {
+    return {{"kind", r.kind}, {"sampled", r.sampled}, {"measured", r.measured}};
+  };
+  const auto check = [](const Check& c) -> Json {
+    return {{"scheme", c.scheme},       {"queues", c.queues},     {"what", c.what},
+            {"predicted", c.predicted}, {"measured", c.measured}, {"error", c.error()}};
+  };
+  return {{"simulation", true},
+          {"rays_per_sample", model.rays_per_sample},
+          {"tile", {model.tile_width, model.tile_height}},
+          {"tiles_over_sequential", model.tiles_over_sequential},
+          {"odprt_overhead", model.odprt_overhead},
+          {"odprt_overhead_measured", model.overhead_measured},
+          {"rays", json_list(model.rays, rays)},
+          {"checks", json_list(checks_of(run), check)},
+          {"predictions", json_list(model.predictions, [](const Prediction& p) { return json_of(p); })}};
 }
 
 Json json_of(const ModesRun& run) {
-  Json json = {{"scene", run.scene},      {"device", run.device},           {"primitives", run.n_primitives},
-               {"cores", run.cores},      {"scene_bytes", run.scene_bytes}, {"rows", Json::array()},
-               {"model", model_json(run)}};
-  for (const ModesRow& row : run.rows) json["rows"].push_back(json_of(run, row));
-  return json;
+  return {{"scene", run.scene},
+          {"primitives", run.n_primitives},
+          {"cores", run.machine.cores},
+          {"device", run.machine.device},
+          {"vectors", run.machine.vectors},
+          {"scene_bytes", run.scene_bytes},
+          {"rows", json_list(run.rows, [&](const ModesRow& row) { return json_of(run, row); })},
+          {"model", model_json(run)}};
 }
 
 std::vector<int> queues_of(std::span<const ModesRun> runs) {
@@ -193,7 +178,7 @@ std::vector<Check> checks_of(const ModesRun& run) {
   for (const Prediction& p : run.model->predictions) {
     const ModesRow* const row = run.find(p.scheme, p.queues);
     if (row == nullptr) continue;
-    if (row->queues <= run.cores)
+    if (row->queues <= run.machine.cores)
       checks.push_back({p.scheme, "seconds", p.queues, p.seconds, row->seconds.median});
     if (p.rays_sent > 0 && row->rays_exchanged.value_or(0) > 0)
       checks.push_back({p.scheme, "rays sent", p.queues, p.rays_sent, *row->rays_exchanged});
@@ -203,9 +188,8 @@ std::vector<Check> checks_of(const ModesRun& run) {
 
 std::string table_of(const ModesRun& run, const ModesOptions& options) {
   std::string out = fmt::format(
-      "{}: {} primitives, {:.1f} MB, {} core{}\n  {:>6}  "
-      "{:<21}{:>9}{:>9}{:>9}{:>10}{:>8}{:>9}{:>9}{:>9}{:>9}\n",
-      short_name(run.scene), run.n_primitives, run.scene_bytes * 1e-6, run.cores, run.cores == 1 ? "" : "s",
+      "{}: {} primitives, {:.1f} MB, {}\n  {:>6}  {:<21}{:>9}{:>9}{:>9}{:>10}{:>8}{:>9}{:>9}{:>9}{:>9}\n",
+      short_name(run.scene), run.n_primitives, millions(run.scene_bytes), counted(run.machine.cores, "core"),
       "queues", "", "s", "least", "most", "speed-up", "idle %", "M rays", "MB", "geom. %", "work MB");
   bool shared = false;
   for (const ModesRow& row : run.rows) {

@@ -1,10 +1,15 @@
-#include "bench/povray/pov_writer.h"
-
+// What    A scene as a POV-Ray file (povray.h).
+// Shape   Spheres, open cones, discs, one mesh of all triangles (smooth ones with their normals); materials
+//         as pigment and finish: ambient, diffuse, phong = (R.V)^shine, reflection, filter for what passes,
+//         ior. POV-Ray itself works the way kdray's model does, but its shadows of transparent objects are
+//         filtered, not black. A kind that lacks a word does not compile.
 #include <fmt/ostream.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "bench/povray/povray.h"
 
 namespace kdray::bench {
 

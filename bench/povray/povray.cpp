@@ -1,7 +1,6 @@
 #include "bench/povray/povray.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <charconv>
 #include <fstream>
@@ -10,7 +9,6 @@
 
 #include "base/error.h"
 #include "bench/measure/run_program.h"
-#include "bench/povray/pov_writer.h"
 #include "io/image/picture_file.h"
 
 namespace kdray::bench {
@@ -29,11 +27,11 @@ std::string last_line(const std::string& text) {
   return text.substr(start == std::string::npos ? 0 : start + 1, end - start);
 }
 
-std::filesystem::path new_folder() {
-  std::string name = (std::filesystem::temp_directory_path() / "kdray-bench-XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr)
-    throw input_error(name, 0, "a temporary folder can't be made", "set TMPDIR to one that can be written");
-  return name;
+std::unique_ptr<Temporary> new_folder() {
+  std::unique_ptr<Temporary> folder = make_temporary_folder("kdray-bench-");
+  if (!folder)
+    throw Error(ErrorCode::input, "a temporary folder can't be made; set TMPDIR to one that can be written");
+  return folder;
 }
 
 }  // namespace
@@ -54,16 +52,11 @@ double trace_time_in(const std::string& output) {
 }
 
 Povray::Povray(const scene::Scene& scene, int width, int height, int depth, double min_weight)
-    : folder_(new_folder()), width_(width), height_(height) {
+    : temporary_(new_folder()), folder_(temporary_->path()), width_(width), height_(height) {
   std::ofstream out(folder_ / "scene.pov");
   write_pov(out, scene, static_cast<double>(width) / height, depth, min_weight);
   out.close();
   if (!out) throw input_error((folder_ / "scene.pov").string(), 0, "can't be written", "is the disk full?");
-}
-
-Povray::~Povray() {
-  std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
 }
 
 double Povray::trace_seconds(int threads) const {

@@ -5,13 +5,23 @@
 #pragma once
 
 #include <filesystem>
+#include <iosfwd>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "base/temporary.h"
 #include "io/image/image.h"
 #include "scene/model/scene.h"
 
 namespace kdray::bench {
+
+// Writes a scene as a POV-Ray file, so that POV-Ray can be timed on the same picture. `depth` as kdray counts
+// it: the eye ray is 1. Rays of less weight than `min_weight` are not followed. What POV-Ray has no word for
+// is left out: attenuation but by the distance's square, ranges, spots, emission.
+void write_pov(std::ostream& out, const scene::Scene& scene, double aspect, int depth, double min_weight);
+// Whether nothing would be left out.
+bool pov_has_words_for(const scene::Scene& scene);
 
 bool has_povray();
 
@@ -19,9 +29,6 @@ bool has_povray();
 class Povray {
  public:
   Povray(const scene::Scene& scene, int width, int height, int depth, double min_weight);
-  ~Povray();
-  Povray(const Povray&) = delete;
-  Povray& operator=(const Povray&) = delete;
 
   double trace_seconds(int threads) const;
 
@@ -35,6 +42,7 @@ class Povray {
  private:
   double run_with(int threads, const std::vector<std::string>& flags) const;
 
+  std::unique_ptr<Temporary> temporary_;
   std::filesystem::path folder_;
   int width_, height_;
 };

@@ -3,15 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <span>
 
-#include "api/statistics_json.h"
-#include "bench/embree/sides.h"
-#include "bench/measure/cores.h"
-#include "bench/queries/compare.h"
-#include "bench/queries/kdray_side.h"
-#include "bench/race/build_race.h"
+#include "bench/embree/embree.h"
+#include "bench/measure/stopwatch.h"
+#include "bench/race/compare.h"
 #include "bench/workload/scenes.h"
 
 namespace kdray::bench {
@@ -86,7 +82,7 @@ class Cell {
   // Wall and processor seconds of a call, on average.
   std::pair<double, double> timed(Asker& asker) const {
     Answers answers(question_, set_->size());
-    const BuildClock clock;
+    const Stopwatch clock;
     for (std::size_t call = 0; call < calls_; ++call)
       asker.ask(question_, *set_, first_of(call), batch_, answers);
     const double wall = clock.wall(), cpu = clock.cpu(), calls = static_cast<double>(calls_);
@@ -131,15 +127,14 @@ class OnDevice {
 
 class QueriesScene {
  public:
-  QueriesScene(const QueriesOptions& options, const std::string& name,
-               const std::function<void(const std::string&)>& working)
+  QueriesScene(const QueriesOptions& options, const std::string& name, const Working& working)
       : options_(options), name_(name), working_(working) {
     const scene::Scene loaded = load_scene(name);
     mesh_ = mesh_of(loaded, name);
     width_ = glm::length(loaded.bounds().extent());
     device_.device = options.device;
     say("making rays");
-    const BuildClock clock;
+    const Stopwatch clock;
     scene_ = std::make_shared<const Scene>(kdray_scene(mesh_, device_));
     run_.first_in_process = clock.wall();
     on_device_.emplace(*scene_, device_);
@@ -148,17 +143,14 @@ class QueriesScene {
   }
 
   QueriesRun run() {
-    const auto device = api::device_json(on_device_->statistics());
     run_.scene = name_;
     run_.n_triangles = mesh_.n_triangles();
-    run_.cores = cores_of(device);
-    run_.device = device.at("name");
-    run_.vectors = device.value("vectors", "");
+    run_.machine = machine_of(on_device_->statistics());
     sides_ = {kdray_side(scene_, mesh_, device_)};
     if (options_.geometry == VertexPrecision::float64) sides_.push_back(double_side(mesh_, device_));
     n_own_ = sides_.size();
     if (options_.embree)
-      for (Side& side : embree_sides(mesh_, run_.cores)) sides_.push_back(std::move(side));
+      for (Side& side : embree_sides(mesh_, run_.machine.cores)) sides_.push_back(std::move(side));
     if (!sets_.empty()) run_.first_answers = first_answers();
     for (const std::string& question : options_.questions)
       for (const QuerySet& set : sets_)
@@ -185,7 +177,7 @@ class QueriesScene {
     for (const Side& side : sides_) runners.push_back({&side, &side.forms.front()});
     for (int round = 0; round < options_.repeat; ++round)
       for (Runner& runner : runners) {
-        const BuildClock clock;
+        const Stopwatch clock;
         runner.side->first_answer(sets_.front());
         runner.wall.push_back(clock.wall());
         runner.cpu.push_back(clock.cpu());
@@ -223,7 +215,7 @@ class QueriesScene {
 
   const QueriesOptions& options_;
   std::string name_;
-  const std::function<void(const std::string&)>& working_;
+  const Working& working_;
   MeshArrays mesh_;
   double width_ = 0;
   DeviceOptions device_;
@@ -237,16 +229,10 @@ class QueriesScene {
 
 }  // namespace
 
-std::vector<QueriesRun> bench_queries(const QueriesOptions& options,
-                                      const std::function<void(const QueriesRun&)>& done,
-                                      const std::function<void(const std::string&)>& working) {
+std::vector<QueriesRun> bench_queries(const QueriesOptions& options, const Progress<QueriesRun>& progress) {
   const QueriesOptions o = resolved(options);
-  std::vector<QueriesRun> runs;
-  for (const std::string& name : o.scenes) {
-    runs.push_back(QueriesScene(o, name, working).run());
-    done(runs.back());
-  }
-  return runs;
+  return run_each(o.scenes, progress,
+                  [&](const std::string& name) { return QueriesScene(o, name, progress.working).run(); });
 }
 
 }  // namespace kdray::bench

@@ -7,18 +7,28 @@
 // Errors  Those of scene::load and kdray/scene.h; ErrorCode::input for a scene without triangles.
 #pragma once
 
-#include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "bench/measure/json.h"
-#include "bench/measure/spread.h"
+#include "bench/measure/progress.h"
+#include "bench/measure/report.h"
 #include "bench/race/asker.h"
-#include "kdray/options.h"
+#include "kdray/kdray.h"
 
 namespace kdray::bench {
+
+// The mesh as a scene that has been committed.
+Scene kdray_scene(const MeshArrays& mesh, const DeviceOptions& device,
+                  VertexPrecision geometry = VertexPrecision::float32);
+
+// kdray as a side, by way of its public interface. The mesh has to outlive it.
+Side kdray_side(const std::shared_ptr<const Scene>& scene, const MeshArrays& mesh,
+                const DeviceOptions& device);
+// The same with vertices, rays and answers in doubles (TreeOptions::geometry).
+Side double_side(const MeshArrays& mesh, const DeviceOptions& device);
 
 struct QueriesOptions {
   std::vector<std::string> scenes = {"boxes", "spheres"};
@@ -50,17 +60,13 @@ struct CellResult {
 struct QueriesRun {
   std::string scene;
   std::size_t n_triangles = 0;
-  int cores = 0;  // as used
-  std::string device, vectors;
+  Machine machine;
   double first_in_process = 0;            // seconds to commit for the first time, with programs to be had
   std::vector<SideResult> first_answers;  // from arrays
   std::vector<CellResult> cells;
 };
 
-// `done` hears of every run as soon as it has ended, `working` what is being measured.
-std::vector<QueriesRun> bench_queries(const QueriesOptions& options,
-                                      const std::function<void(const QueriesRun&)>& done,
-                                      const std::function<void(const std::string&)>& working);
+std::vector<QueriesRun> bench_queries(const QueriesOptions& options, const Progress<QueriesRun>& progress);
 
 // The results for people (a table) and for programs (JSON: docs/bench.md has its keys), in report.cpp.
 

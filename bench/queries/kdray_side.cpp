@@ -1,7 +1,8 @@
-#include "bench/queries/kdray_side.h"
-
+// What    kdray as a side of `bench queries` (queries/bench.h).
 #include <algorithm>
 #include <optional>
+
+#include "bench/queries/bench.h"
 
 namespace kdray::bench {
 

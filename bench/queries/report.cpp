@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "bench/embree/embree.h"
-#include "bench/measure/short_name.h"
 
 namespace kdray::bench {
 
@@ -17,9 +16,9 @@ const SideResult* find(const std::vector<SideResult>& sides, std::string_view na
   return found == sides.end() ? nullptr : &*found;
 }
 
-// How many times as long the other takes as kdray; 0: there is no other.
+// How many times as long the other takes as kdray; nothing where there is no other.
 struct Ratio {
-  double wall = 0, cpu = 0;
+  std::optional<double> wall, cpu;
   Ratio(const std::vector<SideResult>& sides, std::string_view other) {
     const SideResult *const kdray = find(sides, "kdray"), *const o = find(sides, other);
     if (kdray == nullptr || o == nullptr) return;
@@ -28,10 +27,6 @@ struct Ratio {
   }
 };
 
-std::string number(double value, int width, int digits) {
-  return value > 0 ? fmt::format("{:>{}.{}f}", value, width, digits) : fmt::format("{:>{}}", "-", width);
-}
-
 std::string side_cells(const SideResult* side) {
   if (side == nullptr) return fmt::format("{:>12}{:>15}{:>8}", "-", "", "");
   return fmt::format("{:>12.1f}{:>15}{:>8}", 1e6 * side->wall.median, side->form, side->n_differing);
@@ -39,17 +34,16 @@ std::string side_cells(const SideResult* side) {
 
 std::string ratio_cells(const std::vector<SideResult>& sides) {
   const Ratio fast(sides, "fast"), robust(sides, "robust");
-  return number(fast.wall, 8, 2) + number(robust.wall, 8, 2) + number(fast.cpu, 9, 2) +
-         number(robust.cpu, 9, 2);
+  return cell(fast.wall, 8, 2) + cell(robust.wall, 8, 2) + cell(fast.cpu, 9, 2) + cell(robust.cpu, 9, 2);
 }
 
-std::string line_of(const CellResult& cell) {
-  const SideResult* const kdray = find(cell.sides, "kdray");
-  return fmt::format("  {:<9}{:<9}{:>8}{:>12.1f}{}{}{}{:>12}{}\n", cell.question, cell.set, cell.batch,
-                     1e6 * kdray->wall.median, side_cells(find(cell.sides, "fast")),
-                     side_cells(find(cell.sides, "robust")), ratio_cells(cell.sides),
-                     cell.on_device ? number(1e6 * cell.on_device->median, 12, 1) : "",
-                     find(cell.sides, "double") ? number(Ratio(cell.sides, "double").wall, 8, 2) : "");
+std::string line_of(const CellResult& c) {
+  const SideResult* const kdray = find(c.sides, "kdray");
+  return fmt::format("  {:<9}{:<9}{:>8}{:>12.1f}{}{}{}{:>12}{}\n", c.question, c.set, c.batch,
+                     1e6 * kdray->wall.median, side_cells(find(c.sides, "fast")),
+                     side_cells(find(c.sides, "robust")), ratio_cells(c.sides),
+                     c.on_device ? cell(1e6 * c.on_device->median, 12, 1) : "",
+                     find(c.sides, "double") ? cell(Ratio(c.sides, "double").wall, 8, 2) : "");
 }
 
 Json json_of(const SideResult& s) {
@@ -64,49 +58,39 @@ Json ratios_of(const std::vector<SideResult>& sides) {
   Json json = Json::object();
   for (const char* const other : {"fast", "robust", "double"}) {
     const Ratio ratio(sides, other);
-    json[other] = ratio.wall > 0 ? Json(ratio.wall) : Json();
-    json[std::string(other) + "_cpu"] = ratio.cpu > 0 ? Json(ratio.cpu) : Json();
+    json[other] = json_if(ratio.wall);
+    json[std::string(other) + "_cpu"] = json_if(ratio.cpu);
   }
   return json;
 }
 
 Json json_of(const CellResult& c) {
-  Json json = {{"question", c.question},
-               {"set", c.set},
-               {"batch", c.batch},
-               {"calls", c.calls},
-               {"sides", Json::array()},
-               {"ratios", ratios_of(c.sides)},
-               {"on_device", c.on_device ? json_of(*c.on_device) : Json()}};
-  for (const SideResult& s : c.sides) json["sides"].push_back(json_of(s));
-  return json;
+  return {{"question", c.question},
+          {"set", c.set},
+          {"batch", c.batch},
+          {"calls", c.calls},
+          {"sides", json_list(c.sides, [](const SideResult& s) { return json_of(s); })},
+          {"ratios", ratios_of(c.sides)},
+          {"on_device", json_if(c.on_device)}};
 }
 
 Json json_of(const QueriesRun& run) {
-  Json json = {{"scene", run.scene},
-               {"triangles", run.n_triangles},
-               {"cores", run.cores},
-               {"device", run.device},
-               {"vectors", run.vectors},
-               {"first_in_process", run.first_in_process},
-               {"first_answers", Json::array()},
-               {"first_answer_ratios", ratios_of(run.first_answers)},
-               {"cells", Json::array()}};
-  for (const SideResult& s : run.first_answers) json["first_answers"].push_back(json_of(s));
-  for (const CellResult& c : run.cells) json["cells"].push_back(json_of(c));
-  return json;
-}
-
-bool has_embree(std::span<const QueriesRun> runs) {
-  return std::any_of(runs.begin(), runs.end(),
-                     [](const QueriesRun& run) { return find(run.first_answers, "robust") != nullptr; });
+  return {{"scene", run.scene},
+          {"triangles", run.n_triangles},
+          {"cores", run.machine.cores},
+          {"device", run.machine.device},
+          {"vectors", run.machine.vectors},
+          {"first_in_process", run.first_in_process},
+          {"first_answers", json_list(run.first_answers, [](const SideResult& s) { return json_of(s); })},
+          {"first_answer_ratios", ratios_of(run.first_answers)},
+          {"cells", json_list(run.cells, [](const CellResult& c) { return json_of(c); })}};
 }
 
 }  // namespace
 
 std::string table_of(const QueriesRun& run) {
-  std::string out = fmt::format("{}: {} triangles, {} core{} of {}\n", short_name(run.scene), run.n_triangles,
-                                run.cores, run.cores == 1 ? "" : "s", run.device);
+  std::string out = fmt::format("{}: {} triangles, {} of {}\n", short_name(run.scene), run.n_triangles,
+                                counted(run.machine.cores, "core"), run.machine.device);
   out += fmt::format("  from arrays to the first answer, s:");
   for (const SideResult& s : run.first_answers) out += fmt::format(" {} {:.3f}", s.side, s.wall.median);
   out += fmt::format("; the first in this process {:.3f}\n", run.first_in_process);
@@ -119,13 +103,11 @@ std::string table_of(const QueriesRun& run) {
 }
 
 Json json_of(std::span<const QueriesRun> runs, const QueriesOptions& options) {
-  Json json = {{"command", "bench queries"},
-               {"embree", has_embree(runs) ? Json(embree_versions()) : Json()},
-               {"rays", options.rays},
-               {"repeat", options.repeat},
-               {"runs", Json::array()}};
-  for (const QueriesRun& run : runs) json["runs"].push_back(json_of(run));
-  return json;
+  return {{"command", "bench queries"},
+          {"embree", embree_json(options.embree)},
+          {"rays", options.rays},
+          {"repeat", options.repeat},
+          {"runs", json_list(runs, [](const QueriesRun& run) { return json_of(run); })}};
 }
 
 }  // namespace kdray::bench

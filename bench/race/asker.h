@@ -4,6 +4,7 @@
 //         crossings of `all` in place of those of the call before.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <span>
@@ -17,9 +18,15 @@ namespace kdray::bench {
 
 enum class Question { closest, any, count, all, points, distance, inside };
 
-// closest, any, count, all, points, distance, inside.
-std::span<const std::string_view> question_names();
-Question question_of(std::string_view name);
+// In the order of Question.
+inline std::span<const std::string_view> question_names() {
+  static constexpr std::string_view kNames[] = {"closest", "any",      "count", "all",
+                                                "points",  "distance", "inside"};
+  return kNames;
+}
+inline Question question_of(std::string_view name) {
+  return static_cast<Question>(std::ranges::find(question_names(), name) - question_names().begin());
+}
 
 struct Answers {
   // Of `closest`; of `points` the distance is `t`.
@@ -30,8 +37,15 @@ struct Answers {
   std::vector<std::uint32_t> count;
   AllHits all;
 
-  // Room for what a question about n rays or points is answered by.
-  Answers(Question question, std::size_t n);
+  // Capacity for what a question about n rays or points is answered by.
+  Answers(Question question, std::size_t n) {
+    const bool is_place = question == Question::closest || question == Question::points;
+    if (is_place || question == Question::distance) t.resize(n);
+    if (is_place) u.resize(n), v.resize(n), geometry.resize(n), primitive.resize(n);
+    if (question == Question::points) point.resize(3 * n);
+    if (question == Question::any || question == Question::inside) hit.resize(n);
+    if (question == Question::count) count.resize(n);
+  }
 };
 
 class Asker {

@@ -1,34 +1,9 @@
 #include "bench/race/build_race.h"
 
-#include <chrono>
-#include <ctime>
-
 #include "accel/flatten/flatten.h"
 #include "accel/flatten/wide.h"
 
 namespace kdray::bench {
-
-namespace {
-
-double wall_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-double cpu_now() {
-  timespec t{};
-  ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-}  // namespace
-
-BuildClock::BuildClock() : wall_(wall_now()), cpu_(cpu_now()) {}
-double BuildClock::wall() const {
-  return wall_now() - wall_;
-}
-double BuildClock::cpu() const {
-  return cpu_now() - cpu_;
-}
 
 BuildSpreads spreads_of(std::span<const BuildTimes> times) {
   std::vector<double> tree, flatten, total, cpu;
@@ -54,7 +29,7 @@ std::vector<BuildSpreads> race_builds(std::span<const TimedBuild> builds, int ro
 BuildTimes time_build(const scene::Scene& scene, const scene::Geometry& geometry,
                       const kdtree::BuildConfig& config) {
   BuildTimes times;
-  const BuildClock clock;
+  const Stopwatch clock;
   const kdtree::Tree tree = kdtree::build(geometry, config);
   times.tree = clock.wall();
   constexpr bool kBinaryForm = false;  // a picture takes the wide one alone

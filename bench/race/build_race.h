@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "accel/kdtree/build.h"
-#include "bench/measure/spread.h"
+#include "bench/measure/report.h"
+#include "bench/measure/stopwatch.h"
 #include "scene/model/geometry.h"
 #include "scene/model/scene.h"
 
@@ -34,16 +35,5 @@ BuildSpreads spreads_of(std::span<const BuildTimes> times);
 // Builds a tree and all its forms, and forgets them.
 BuildTimes time_build(const scene::Scene& scene, const scene::Geometry& geometry,
                       const kdtree::BuildConfig& config);
-
-// A stopwatch for both kinds of time.
-class BuildClock {
- public:
-  BuildClock();
-  double wall() const;  // seconds since it was made
-  double cpu() const;   // of all of the process' threads
-
- private:
-  double wall_, cpu_;
-};
 
 }  // namespace kdray::bench

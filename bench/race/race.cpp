@@ -1,13 +1,17 @@
 #include "bench/race/race.h"
 
 #include <algorithm>
+#include <array>
 
-#include "bench/race/compare_hits.h"
+#include "api/record.h"
+#include "base/error.h"
+#include "bench/race/compare.h"
 
 namespace kdray::bench {
 
 namespace {
 
+constexpr std::array<std::string_view, 5> kTraversals = {"binary", "wide", "packet", "batch", "auto"};
 constexpr int kWarmUps = 2;  // at the most: no more than rounds
 
 struct Runner {
@@ -50,6 +54,38 @@ const Outcome* fastest(std::span<const Outcome> outcomes, Accept&& accept) {
 }
 
 }  // namespace
+
+const char* name_of(Family family) {
+  return family == Family::kdray ? "kdray" : family == Family::embree_fast ? "Embree fast" : "Embree robust";
+}
+
+std::span<const std::string_view> traversal_names() {
+  return kTraversals;
+}
+
+Traversal traversal_of(std::string_view name) {
+  for (const Traversal t :
+       {Traversal::binary, Traversal::wide, Traversal::packet, Traversal::batch, Traversal::automatic})
+    if (api::name_of(t) == name) return t;
+  throw Error(ErrorCode::usage, "there is no traversal '" + std::string(name) + "'");
+}
+
+Contestant kdray_contestant(const std::shared_ptr<Renderer>& renderer, const std::string& traversal) {
+  const auto trace = [renderer, t = traversal_of(traversal)](const RayClass& c) {
+    std::vector<Hit> hits = renderer->trace(c.rays, c.any_hit, 1, t);
+    return Traced{renderer->statistics().seconds.trace, std::move(hits)};
+  };
+  return {Family::kdray, traversal, {{"", trace}}};
+}
+
+Json json_of(const Outcome& o, std::size_t n_rays) {
+  Json json = {{"flag", o.variant},
+               {"seconds", json_of(o.seconds)},
+               {"mrays_per_s", json_of(mrays_per_s(n_rays, o.seconds))},
+               {"differing_share", o.differing_share}};
+  if (o.family == Family::kdray) json["not_identical"] = o.n_not_identical;
+  return json;
+}
 
 std::vector<Outcome> race(const RayClass& rays, std::span<const Hit> reference,
                           const std::vector<Contestant>& contestants, int rounds) {

@@ -1,13 +1,10 @@
 #include "bench/ranks/bench.h"
 
 #include <algorithm>
-#include <mutex>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
 
 #include "api/hooks.h"
-#include "api/statistics_json.h"
 #include "base/timer.h"
 #include "bench/workload/scenes.h"
 #include "cluster/transport/ranks.h"
@@ -15,8 +12,6 @@
 namespace kdray::bench {
 
 namespace {
-
-const std::vector<std::string> kScenes = {"balls"};
 
 // What kdray gives several ranks of one core each (api/scheduler.cpp): one core alone is to be like them.
 constexpr Tuning kOfRanks{.slices = 1, .waves = 128};
@@ -33,10 +28,11 @@ Renderer open(const PreparedScene& scene, const RanksOptions& o, std::shared_ptr
 }
 
 RenderOptions frame_of(const RanksOptions& options, Mode mode) {
-  RenderOptions o;
-  o.width = options.width, o.height = options.height, o.depth = options.depth, o.samples = options.samples;
-  o.mode = mode;
-  return o;
+  return {.width = options.width,
+          .height = options.height,
+          .depth = options.depth,
+          .samples = options.samples,
+          .mode = mode};
 }
 
 // This member as one of so many ranks, or as nobody.
@@ -59,13 +55,11 @@ class Place {
     if (picture.rgb != reference.rgb) ++row_.differing_pictures;
     if (!counts) return;
     row_.rounds.push_back(renderer_->statistics().seconds.render);
-    const nlohmann::json facts = api::statistics_json(renderer_->statistics());
-    const nlohmann::json& mode = facts.at("mode");
+    const Statistics::Division& division = renderer_->statistics().mode.division.value();
     double busy = 0;
-    for (const auto& queue : mode.at("per_queue")) busy += queue.at("busy_seconds").get<double>();
+    for (const Statistics::Queue& queue : division.per_queue) busy += queue.busy_seconds;
     busy_.push_back(busy);
-    const auto sent = mode.find("exchange");
-    rays_.push_back(sent == mode.end() ? 0 : sent->at("rays_total").get<double>());
+    rays_.push_back(division.odprt ? static_cast<double>(division.odprt->rays_total) : 0);
     messages_.push_back(static_cast<double>(after.sent + after.received - before.sent - before.received));
     bytes_.push_back(static_cast<double>(after.bytes_sent + after.bytes_received - before.bytes_sent -
                                          before.bytes_received));
@@ -127,7 +121,7 @@ class Measured {
     for (const Place& place : places_) mode.rows.push_back(place.row());
     return mode;
   }
-  std::string device() const { return api::statistics_json(alone_.statistics()).at("device").at("name"); }
+  const Statistics& statistics() const { return alone_.statistics(); }
 
  private:
   Team& team_;
@@ -155,56 +149,44 @@ void measure(RanksRun& run, Team& team, const PreparedScene& scene, const RanksO
   }
   if (!team.leads()) return;
   for (const Measured& mode : modes) run.modes.push_back(mode.result());
-  run.device = modes.front().device();
+  run.n_primitives = modes.front().statistics().scene.primitives;
+  run.machine = machine_of(modes.front().statistics());
+  run.machine.cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));  // it has one
   for (const auto& [n, seconds] : at_once)
     run.at_once[n] = std::min(1.0, run.modes.front().alone.median / median(seconds));
 }
 
 }  // namespace
 
-SceneShelf::Entry::Entry(const std::string& name)
-    : scene(load_scene(name)), prepared(scene, {.binary_form = false}) {}
-
-struct SceneShelf::Shelved {
-  std::mutex mutex;
-  std::map<std::string, std::unique_ptr<Entry>> entries;
-};
-
-SceneShelf::SceneShelf() : shelved_(std::make_unique<Shelved>()) {}
-SceneShelf::~SceneShelf() = default;
-
-const SceneShelf::Entry& SceneShelf::get(const std::string& name) {
-  const std::lock_guard lock(shelved_->mutex);
-  auto& entry = shelved_->entries[name];
-  if (!entry) entry = std::make_unique<Entry>(name);
-  return *entry;
+const PreparedScene& SceneShelf::get(const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  const auto found = scenes_.find(name);
+  if (found != scenes_.end()) return found->second;
+  return scenes_.emplace(name, PreparedScene(Scene(load_scene(name)), {.binary_form = false})).first->second;
 }
 
 std::vector<RanksRun> bench_ranks(Team& team, SceneShelf& shelf, bool over_mpi, const RanksOptions& options,
-                                  const std::function<void(const RanksRun&)>& done,
-                                  const std::function<void(const std::string&)>& working) {
+                                  const Progress<RanksRun>& progress) {
   std::vector<RanksRun> runs;
-  for (const std::string& name : options.scenes.empty() ? kScenes : options.scenes) {
-    if (team.leads()) working(name);
-    const SceneShelf::Entry& entry = shelf.get(name);
+  for (const std::string& name : options.scenes) {
+    if (team.leads()) progress.working(name);
     RanksRun run;
-    run.scene = name, run.n_primitives = entry.scene.primitives(), run.over_mpi = over_mpi;
-    run.cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-    measure(run, team, entry.prepared, options);
+    run.scene = name, run.over_mpi = over_mpi;
+    measure(run, team, shelf.get(name), options);
     team.meet();
     if (!team.leads()) continue;
-    done(run);
+    progress.done(run);
     runs.push_back(std::move(run));
   }
   return runs;
 }
 
 std::size_t count_differing_pictures(const std::vector<RanksRun>& runs) {
-  std::size_t n = 0;
-  for (const RanksRun& run : runs)
-    for (const RanksMode& mode : run.modes)
-      for (const RanksRow& row : mode.rows) n += row.differing_pictures;
-  return n;
+  return count_over(runs, [](const RanksRun& run) {
+    return count_over(run.modes, [](const RanksMode& mode) {
+      return count_over(mode.rows, [](const RanksRow& row) { return row.differing_pictures; });
+    });
+  });
 }
 
 }  // namespace kdray::bench

@@ -7,24 +7,34 @@
 // Units   Seconds; bytes a second.
 #pragma once
 
-#include <functional>
 #include <map>
-#include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
-#include "bench/measure/json.h"
-#include "bench/measure/spread.h"
-#include "bench/ranks/ping_pong.h"
+#include "bench/measure/progress.h"
+#include "bench/measure/report.h"
 #include "bench/ranks/team.h"
 #include "kdray/kdray.h"
 
 namespace kdray::bench {
 
+// What messages cost on the network that there is.
+struct MessageCosts {
+  double latency = 0;  // one way
+  double bandwidth = 1e12;
+  double send = 0, take = 0;  // of a thread's time, for each message
+};
+
+// Between the first two members of a team, while nobody else does anything: short and long messages there and
+// back, for latency and bandwidth (medians); many short ones in a row, for what sending and taking one
+// occupies a rank's thread (the least). All members call it; what member 0 gets is measured.
+MessageCosts ping_pong(Team& team);
+
 struct RanksOptions {
-  std::vector<std::string> scenes = {};  // empty: balls
-  std::vector<int> ranks = {1, 2, 4, 8};
-  std::vector<double> delays = {0, 2.5e-3};
+  std::vector<std::string> scenes;
+  std::vector<int> ranks;
+  std::vector<double> delays;
   int width = 1024, height = 1024, depth = 5, samples = 1, repeat = 7;
   std::string device = "auto";
 };
@@ -50,9 +60,9 @@ struct RanksMode {
 };
 
 struct RanksRun {
-  std::string scene, device;
+  std::string scene;
   std::size_t n_primitives = 0;
-  int cores = 1;
+  Machine machine;  // with all of its cores
   bool over_mpi = false;
   MessageCosts messages;
   std::map<int, double> at_once;  // of so many frames by themselves, the speed of each as a part of one alone
@@ -62,24 +72,16 @@ struct RanksRun {
 // Scenes that members of one process share.
 class SceneShelf {
  public:
-  SceneShelf();
-  ~SceneShelf();
-  struct Entry {
-    explicit Entry(const std::string& name);
-    Scene scene;
-    PreparedScene prepared;
-  };
-  const Entry& get(const std::string& name);
+  const PreparedScene& get(const std::string& name);
 
  private:
-  struct Shelved;
-  std::unique_ptr<Shelved> shelved_;
+  std::mutex mutex_;
+  std::map<std::string, PreparedScene> scenes_;
 };
 
-// All members of the team call it; member 0's results count. `done` and `working` are called there.
+// All members of the team call it; member 0's results count, and it alone tells of them.
 std::vector<RanksRun> bench_ranks(Team& team, SceneShelf& shelf, bool over_mpi, const RanksOptions& options,
-                                  const std::function<void(const RanksRun&)>& done,
-                                  const std::function<void(const std::string&)>& working);
+                                  const Progress<RanksRun>& progress);
 
 std::size_t count_differing_pictures(const std::vector<RanksRun>& runs);
 

@@ -1,11 +1,10 @@
-#include "bench/ranks/ping_pong.h"
-
+// What    What messages cost on the network that there is (ranks/bench.h).
 #include <algorithm>
 #include <chrono>
 #include <thread>
 
 #include "base/timer.h"
-#include "bench/measure/spread.h"
+#include "bench/ranks/bench.h"
 
 namespace kdray::bench {
 

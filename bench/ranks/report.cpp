@@ -4,8 +4,6 @@
 
 #include <optional>
 
-#include "bench/measure/short_name.h"
-
 namespace kdray::bench {
 
 namespace {
@@ -39,22 +37,39 @@ std::string table_of(const RanksRun& run, const RanksMode& mode) {
 }
 
 Json json_of(const RanksRun& run, const RanksMode& mode) {
-  Json json = {{"mode", mode.name}, {"alone_seconds", json_of(mode.alone)}, {"rows", Json::array()}};
-  for (const RanksRow& row : mode.rows) {
-    const std::optional<double> share = share_of_cores(run, mode, row);
-    json["rows"].push_back({{"ranks", row.ranks},
-                            {"delay_seconds", row.delay},
-                            {"seconds", json_of(row.seconds)},
-                            {"rounds", row.rounds},
-                            {"speed_up", mode.speed_up(row)},
-                            {"share_of_cores", share ? Json(*share) : Json()},
-                            {"busy_seconds", row.busy},
-                            {"messages", row.messages},
-                            {"bytes", row.bytes},
-                            {"rays_sent", row.rays_sent},
-                            {"differing_pictures", row.differing_pictures}});
-  }
-  return json;
+  const auto of_row = [&](const RanksRow& row) -> Json {
+    return {{"ranks", row.ranks},
+            {"delay_seconds", row.delay},
+            {"seconds", json_of(row.seconds)},
+            {"rounds", row.rounds},
+            {"speed_up", mode.speed_up(row)},
+            {"share_of_cores", json_if(share_of_cores(run, mode, row))},
+            {"busy_seconds", row.busy},
+            {"messages", row.messages},
+            {"bytes", row.bytes},
+            {"rays_sent", row.rays_sent},
+            {"differing_pictures", row.differing_pictures}};
+  };
+  return {
+      {"mode", mode.name}, {"alone_seconds", json_of(mode.alone)}, {"rows", json_list(mode.rows, of_row)}};
+}
+
+Json json_of(const RanksRun& run) {
+  const MessageCosts& m = run.messages;
+  const auto at_once = [](const auto& one) -> Json { return {{"queues", one.first}, {"speed", one.second}}; };
+  return {{"scene", run.scene},
+          {"primitives", run.n_primitives},
+          {"cores", run.machine.cores},
+          {"device", run.machine.device},
+          {"vectors", run.machine.vectors},
+          {"over", run.over_mpi ? "MPI" : "threads"},
+          {"network",
+           {{"latency_seconds", m.latency},
+            {"bytes_per_second", m.bandwidth},
+            {"send_seconds", m.send},
+            {"take_seconds", m.take}}},
+          {"at_once", json_list(run.at_once, at_once)},
+          {"modes", json_list(run.modes, [&](const RanksMode& mode) { return json_of(run, mode); })}};
 }
 
 }  // namespace
@@ -62,11 +77,11 @@ Json json_of(const RanksRun& run, const RanksMode& mode) {
 std::string table_of(const RanksRun& run, const RanksOptions& options) {
   const MessageCosts& m = run.messages;
   std::string out = fmt::format(
-      "{}: {} primitives, {} cores, {}x{}, {} sample{}\n"
+      "{}: {} primitives, {} cores, {}x{}, {}\n"
       "  network ({}): {:.1f} us, {:.3g} GB/s; a message occupies {:.2f} us to send, {:.2f} us to take\n",
-      short_name(run.scene), run.n_primitives, run.cores, options.width, options.height, options.samples,
-      options.samples == 1 ? "" : "s", run.over_mpi ? "MPI" : "threads", 1e6 * m.latency, 1e-9 * m.bandwidth,
-      1e6 * m.send, 1e6 * m.take);
+      short_name(run.scene), run.n_primitives, run.machine.cores, options.width, options.height,
+      counted(options.samples, "sample"), run.over_mpi ? "MPI" : "threads", 1e6 * m.latency,
+      1e-9 * m.bandwidth, 1e6 * m.send, 1e6 * m.take);
   out += "  at once, each by itself:";
   for (const auto& [n, speed] : run.at_once) out += fmt::format(" {} of speed {:.3f};", n, speed);
   out.back() = '\n';
@@ -75,28 +90,12 @@ std::string table_of(const RanksRun& run, const RanksOptions& options) {
 }
 
 Json json_of(const std::vector<RanksRun>& runs, const RanksOptions& options) {
-  Json json = {{"command", "bench modes --ranks"}, {"size", {options.width, options.height}},
-               {"depth", options.depth},           {"samples", options.samples},
-               {"repeat", options.repeat},         {"runs", Json::array()}};
-  for (const RanksRun& run : runs) {
-    const MessageCosts& m = run.messages;
-    Json of_run = {{"scene", run.scene},
-                   {"device", run.device},
-                   {"primitives", run.n_primitives},
-                   {"cores", run.cores},
-                   {"over", run.over_mpi ? "MPI" : "threads"},
-                   {"network",
-                    {{"latency_seconds", m.latency},
-                     {"bytes_per_second", m.bandwidth},
-                     {"send_seconds", m.send},
-                     {"take_seconds", m.take}}},
-                   {"at_once", Json::array()},
-                   {"modes", Json::array()}};
-    for (const auto& [n, speed] : run.at_once) of_run["at_once"].push_back({{"queues", n}, {"speed", speed}});
-    for (const RanksMode& mode : run.modes) of_run["modes"].push_back(json_of(run, mode));
-    json["runs"].push_back(std::move(of_run));
-  }
-  return json;
+  return {{"command", "bench modes --ranks"},
+          {"size", {options.width, options.height}},
+          {"depth", options.depth},
+          {"samples", options.samples},
+          {"repeat", options.repeat},
+          {"runs", json_list(runs, [](const RanksRun& run) { return json_of(run); })}};
 }
 
 }  // namespace kdray::bench

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -29,6 +30,16 @@ std::uint32_t group_of(const Message& message) {
   if (message.bytes.size() < sizeof group) transport::refuse(message);
   std::memcpy(&group, message.bytes.data() + message.bytes.size() - sizeof group, sizeof group);
   return group;
+}
+
+// The first that is wanted, taken out.
+template <class Wanted>
+std::optional<Message> take_first(std::deque<Message>& messages, const Wanted& is_wanted) {
+  const auto found = std::find_if(messages.begin(), messages.end(), is_wanted);
+  if (found == messages.end()) return std::nullopt;
+  Message message = std::move(*found);
+  messages.erase(found);
+  return message;
 }
 
 Bytes bytes_of(double value) {
@@ -67,25 +78,16 @@ void Team::look() {
 
 std::optional<Message> Team::next_of_group(std::uint32_t group) {
   look();
-  for (auto message = of_groups_.begin(); message != of_groups_.end(); ++message) {
-    if (group_of(*message) != group) continue;
-    Message found = std::move(*message);
-    of_groups_.erase(message);
-    found.bytes.resize(found.bytes.size() - sizeof group);
-    return found;
-  }
-  return std::nullopt;
+  auto found = take_first(of_groups_, [&](const Message& message) { return group_of(message) == group; });
+  if (found) found->bytes.resize(found->bytes.size() - sizeof group);
+  return found;
 }
 
 Message Team::wait_for(Tag tag) {
   for (;; std::this_thread::sleep_for(kTeamNap)) {
     look();
-    for (auto message = of_team_.begin(); message != of_team_.end(); ++message) {
-      if (message->tag != tag) continue;
-      Message found = std::move(*message);
-      of_team_.erase(message);
-      return found;
-    }
+    auto found = take_first(of_team_, [&](const Message& message) { return message.tag == tag; });
+    if (found) return std::move(*found);
   }
 }
 

@@ -4,12 +4,11 @@
 //         thrown.
 #pragma once
 
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "bench/measure/json.h"
+#include "bench/measure/progress.h"
 #include "bench/race/race.h"
 #include "bench/workload/kinds.h"
 
@@ -41,14 +40,11 @@ struct RaysRun {
   std::string scene;
   KindCounts n_primitives;
   std::size_t n_instances = 0;
-  int cores = 0;  // as used
-  std::string device, vectors;
+  Machine machine;
   std::vector<ClassResult> classes;
 };
 
-// `done` hears of every run as soon as it has ended, `working` what is being measured.
-std::vector<RaysRun> bench_rays(const RaysOptions& options, const std::function<void(const RaysRun&)>& done,
-                                const std::function<void(const std::string&)>& working);
+std::vector<RaysRun> bench_rays(const RaysOptions& options, const Progress<RaysRun>& progress);
 
 // kdray's hits that were not those of its binary traversal, over all runs.
 std::size_t count_not_identical(std::span<const RaysRun> runs);

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "bench/embree/embree.h"
 #include "bench/rays/bench.h"
 
@@ -9,31 +7,16 @@ namespace kdray::bench {
 
 namespace {
 
-const char* name_of(Family family) {
-  switch (family) {
-    case Family::embree_fast:
-      return "Embree fast";
-    case Family::embree_robust:
-      return "Embree robust";
-    default:
-      return "kdray";
-  }
-}
-
-// Empty when there was none, or when it was left out.
-std::string version_of_embree(const RaysOptions& options) {
-  return options.embree ? embree_versions() : "";
-}
-
 std::string heading(const RaysRun& run) {
   const std::string instances = run.n_instances > 0 ? fmt::format(", {} instances", run.n_instances) : "";
-  return fmt::format("{}: {}{}, {} core{}", std::filesystem::path(run.scene).filename().string(),
-                     in_words(run.n_primitives), instances, run.cores, run.cores == 1 ? "" : "s");
+  return fmt::format("{}: {}{}, {}", std::filesystem::path(run.scene).filename().string(),
+                     in_words(run.n_primitives), instances, counted(run.machine.cores, "core"));
 }
 
-// How many times as fast as `other`, or 0 when one is missing.
-double ratio(const Outcome* one, const Outcome* other) {
-  return one == nullptr || other == nullptr ? 0 : other->seconds.median / one->seconds.median;
+// How many times as fast as `other`; nothing when one is missing.
+std::optional<double> ratio(const Outcome* one, const Outcome* other) {
+  if (one == nullptr || other == nullptr) return std::nullopt;
+  return other->seconds.median / one->seconds.median;
 }
 
 struct RayRatios {
@@ -45,13 +28,9 @@ struct RayRatios {
         robust(best_of(o, Family::embree_robust)) {}
 };
 
-std::string cell(double value) {
-  return value > 0 ? fmt::format("{:9.2f}", value) : fmt::format("{:>9}", "-");
-}
-
 std::string rates_line(const ClassResult& c) {
   std::string out = fmt::format("  {:<10}{:>9}", c.name, c.n_rays);
-  for (const Outcome& o : c.outcomes) out += cell(mrays_per_s(c.n_rays, o.seconds).median);
+  for (const Outcome& o : c.outcomes) out += cell(mrays_per_s(c.n_rays, o.seconds).median, 9, 2);
   return out + "\n";
 }
 
@@ -94,9 +73,9 @@ std::string ratios(const RaysRun& run) {
     const RayRatios r(c.outcomes);
     out += fmt::format("  {:<10}{}{}{}{}{}{}{}{}\n", c.name, spread_in_words(r.best_kdray, c.n_rays),
                        spread_in_words(r.fast, c.n_rays), spread_in_words(r.robust, c.n_rays),
-                       cell(ratio(r.best_kdray, r.fast)), cell(ratio(r.best_kdray, r.robust)),
-                       cell(ratio(r.automatic, r.fast)), cell(ratio(r.automatic, r.robust)),
-                       cell(ratio(r.automatic, best_fixed(c.outcomes))));
+                       cell(ratio(r.best_kdray, r.fast), 9, 2), cell(ratio(r.best_kdray, r.robust), 9, 2),
+                       cell(ratio(r.automatic, r.fast), 9, 2), cell(ratio(r.automatic, r.robust), 9, 2),
+                       cell(ratio(r.automatic, best_fixed(c.outcomes)), 9, 2));
   }
   return out;
 }
@@ -115,40 +94,35 @@ std::string disagreements(const RaysRun& run) {
   return out;
 }
 
-Json json_of(const Outcome& o, std::size_t n_rays) {
-  Json json = {{"family", name_of(o.family)},
-               {"mode", o.mode},
-               {"flag", o.variant},
-               {"seconds", json_of(o.seconds)},
-               {"mrays_per_s", json_of(mrays_per_s(n_rays, o.seconds))},
-               {"differing_share", o.differing_share}};
-  if (o.family == Family::kdray) json["not_identical"] = o.n_not_identical;
-  return json;
-}
-
 Json json_of(const ClassResult& c) {
-  const RayRatios r(c.outcomes);
-  Json json = {{"name", c.name},   {"any_hit", c.any_hit},         {"rays", c.n_rays},
-               {"hits", c.n_hits}, {"contestants", Json::array()}, {"ratios", Json::object()}};
-  for (const Outcome& o : c.outcomes) json["contestants"].push_back(json_of(o, c.n_rays));
-  const auto put = [&](const char* name, const Outcome* one, const Outcome* other) {
-    json["ratios"][name] = one && other ? Json(ratio(one, other)) : Json();
+  const auto contestant = [&](const Outcome& o) {
+    Json json = {{"family", name_of(o.family)}, {"mode", o.mode}};
+    json.update(json_of(o, c.n_rays));
+    return json;
   };
-  put("best_to_fast", r.best_kdray, r.fast);
-  put("best_to_robust", r.best_kdray, r.robust);
-  put("auto_to_fast", r.automatic, r.fast);
-  put("auto_to_robust", r.automatic, r.robust);
-  put("auto_to_best_fixed", r.automatic, best_fixed(c.outcomes));
-  return json;
+  const RayRatios r(c.outcomes);
+  const auto times = [](const Outcome* one, const Outcome* other) { return json_if(ratio(one, other)); };
+  return {{"name", c.name},
+          {"any_hit", c.any_hit},
+          {"rays", c.n_rays},
+          {"hits", c.n_hits},
+          {"contestants", json_list(c.outcomes, contestant)},
+          {"ratios",
+           {{"best_to_fast", times(r.best_kdray, r.fast)},
+            {"best_to_robust", times(r.best_kdray, r.robust)},
+            {"auto_to_fast", times(r.automatic, r.fast)},
+            {"auto_to_robust", times(r.automatic, r.robust)},
+            {"auto_to_best_fixed", times(r.automatic, best_fixed(c.outcomes))}}}};
 }
 
 Json json_of(const RaysRun& run) {
-  Json json = {{"scene", run.scene},           {"primitives", json_of(run.n_primitives)},
-               {"instances", run.n_instances}, {"cores", run.cores},
-               {"device", run.device},         {"vectors", run.vectors},
-               {"classes", Json::array()}};
-  for (const ClassResult& c : run.classes) json["classes"].push_back(json_of(c));
-  return json;
+  return {{"scene", run.scene},
+          {"primitives", json_of(run.n_primitives)},
+          {"instances", run.n_instances},
+          {"cores", run.machine.cores},
+          {"device", run.machine.device},
+          {"vectors", run.machine.vectors},
+          {"classes", json_list(run.classes, [](const ClassResult& c) { return json_of(c); })}};
 }
 
 }  // namespace
@@ -158,15 +132,12 @@ std::string table_of(const RaysRun& run) {
 }
 
 Json json_of(std::span<const RaysRun> runs, const RaysOptions& options) {
-  const std::string embree = version_of_embree(options);
-  Json json = {{"command", "bench rays"},
-               {"embree", embree.empty() ? Json() : Json(embree)},
-               {"rays", options.rays},
-               {"repeat", options.repeat},
-               {"not_identical", count_not_identical(runs)},
-               {"runs", Json::array()}};
-  for (const RaysRun& run : runs) json["runs"].push_back(json_of(run));
-  return json;
+  return {{"command", "bench rays"},
+          {"embree", embree_json(options.embree)},
+          {"rays", options.rays},
+          {"repeat", options.repeat},
+          {"not_identical", count_not_identical(runs)},
+          {"runs", json_list(runs, [](const RaysRun& run) { return json_of(run); })}};
 }
 
 }  // namespace kdray::bench

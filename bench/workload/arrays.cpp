@@ -11,23 +11,14 @@ namespace kdray::bench {
 
 namespace {
 
-struct SetKind {
-  std::string_view set, rays;  // the set's name, its class of rays
-};
-constexpr std::array<SetKind, 3> kSets{
-    {{"coherent", "primary"}, {"diffuse", "diffuse"}, {"random", "random"}}};
-constexpr std::array<std::string_view, kSets.size()> kSetNames{kSets[0].set, kSets[1].set, kSets[2].set};
-
-std::string_view set_of_class(std::string_view rays) {
-  return std::find_if(kSets.begin(), kSets.end(), [&](const SetKind& s) { return s.rays == rays; })->set;
-}
+constexpr std::array<std::string_view, 3> kSetNames{"coherent", "diffuse", "random"};
 
 void append(std::vector<float>& to, const float (&v)[3]) {
   to.insert(to.end(), {v[0], v[1], v[2]});
 }
 
 QuerySet set_of(const RayClass& rays, std::size_t n) {
-  QuerySet set{std::string(set_of_class(rays.name)), {}, {}, {}};
+  QuerySet set{rays.name == "primary" ? "coherent" : rays.name, {}, {}, {}};
   for (std::size_t i = 0; i < n; ++i) {
     const Ray& ray = rays.rays[i % rays.rays.size()];
     append(set.origins, ray.origin);
@@ -77,9 +68,7 @@ std::span<const std::string_view> set_names() {
 std::vector<QuerySet> make_sets(const scene::Scene& scene, std::span<const std::string> names, std::size_t n,
                                 const Tracer& trace) {
   std::vector<std::string> classes;
-  for (const SetKind& s : kSets)
-    if (std::find(names.begin(), names.end(), s.set) != names.end()) classes.emplace_back(s.rays);
-  const int side = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(n))));
+  for (const std::string& name : names) classes.push_back(name == "coherent" ? "primary" : name);
   // The tracer numbers triangles as they lie in the mesh.
   const Tracer by_number = [&](std::span<const Ray> rays) {
     std::vector<Hit> hits = trace(rays);
@@ -91,7 +80,7 @@ std::vector<QuerySet> make_sets(const scene::Scene& scene, std::span<const std::
   };
   const auto width = static_cast<float>(glm::length(scene.bounds().extent()));
   std::vector<QuerySet> sets;
-  for (const RayClass& c : make_classes(scene, classes, side, by_number)) {
+  for (const RayClass& c : make_classes(scene, classes, side_of(static_cast<int>(n)), by_number)) {
     if (c.rays.empty()) continue;
     sets.push_back(set_of(c, n));
     if (c.name == "primary") move_half_way(trace, width, sets.back());

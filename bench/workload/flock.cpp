@@ -1,10 +1,11 @@
-#include "bench/workload/flock.h"
+// What    Many of one mesh, side by side in a square (workload/scenes.h).
 
 #include <algorithm>
 #include <memory>
 #include <numbers>
 
 #include "base/error.h"
+#include "bench/workload/scenes.h"
 #include "scene/generate/rotation.h"
 #include "scene/model/frame.h"
 #include "scene/model/instances.h"

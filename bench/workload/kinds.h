@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "bench/measure/json.h"
+#include "bench/measure/report.h"
 #include "scene/primitives/kinds.h"
 
 namespace kdray::bench {

@@ -1,9 +1,10 @@
-#include "bench/workload/meadow.h"
+// What    The outdoor scene of workload/scenes.h.
 
 #include <cmath>
 #include <memory>
 #include <numbers>
 
+#include "bench/workload/scenes.h"
 #include "scene/generate/displaced_sphere.h"
 #include "scene/generate/random.h"
 #include "scene/generate/rotation.h"

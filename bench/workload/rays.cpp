@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "bench/workload/pixel_order.h"
-#include "bench/workload/surfaces.h"
 #include "scene/generate/random.h"
 
 namespace kdray::bench {
@@ -18,41 +17,20 @@ constexpr std::array<std::string_view, 7> kNames = {"primary",   "scanline", "sh
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kGlass = 1.5;  // the index of refraction of everything
 
-// Where a ray has met a surface.
-struct Meeting {
-  dvec3 position;
-  dvec3 normal;    // unit, on the side that the ray came from
-  dvec3 incoming;  // unit
-};
-
-// The interval is in multiples of `along`, which may have any length.
-Ray make_ray(const dvec3& origin, const dvec3& along, double t_max, double t_min = 0) {
-  const double length = glm::length(along);
-  Ray ray{};
-  for (int k = 0; k < 3; ++k) {
-    ray.origin[k] = static_cast<float>(origin[k]);
-    ray.direction[k] = static_cast<float>(along[k] / length);
-  }
-  ray.t_min = static_cast<float>(t_min * length);
-  ray.t_max = static_cast<float>(t_max * length);
-  return ray;
-}
-
 dvec3 double_of(const float (&v)[3]) {
   return {v[0], v[1], v[2]};
 }
 
 // Primary rays go through the pixels' centres, from `hither` along the view direction on.
 std::vector<Ray> primary(const scene::Camera& camera, const std::vector<Pixel>& pixels, int side) {
-  const dvec3 forward = glm::normalize(camera.at - camera.from);
-  const dvec3 right = glm::normalize(glm::cross(forward, camera.up));
-  const dvec3 up = glm::cross(right, forward);
-  const double scale = std::tan(camera.vertical_fov / 2);
+  const CameraBasis view(camera);
+  const double scale = view.half_height;
   std::vector<Ray> rays;
   rays.reserve(pixels.size());
   for (const Pixel& p : pixels) {
     const double x = scale * (2 * (p.x + 0.5) / side - 1), y = scale * (1 - 2 * (p.y + 0.5) / side);
-    rays.push_back(make_ray(camera.from, forward + right * x + up * y, kInfinity, camera.hither));
+    rays.push_back(
+        make_ray(camera.from, view.forward + view.right * x + view.up * y, kInfinity, camera.hither));
   }
   return rays;
 }
@@ -61,14 +39,8 @@ std::vector<Meeting> meetings(const scene::Scene& scene, const std::vector<Ray>&
                               const std::vector<Hit>& hits) {
   const Surfaces surfaces(scene);
   std::vector<Meeting> found;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (hits[i].primitive < 0) continue;
-    const dvec3 direction = double_of(rays[i].direction);
-    const dvec3 position = double_of(rays[i].origin) + direction * static_cast<double>(hits[i].t);
-    const dvec3 normal = surfaces.normal(static_cast<std::uint32_t>(hits[i].primitive), position);
-    found.push_back(
-        {position, glm::dot(normal, direction) > 0 ? -normal : normal, glm::normalize(direction)});
-  }
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    if (hits[i].primitive >= 0) found.emplace_back(surfaces, rays[i], hits[i]);
   return found;
 }
 
@@ -135,6 +107,36 @@ double offset_of(const scene::Scene& scene) {
   if (bounds.empty()) return 0;
   const dvec3 reach = glm::max(glm::abs(bounds.lo), glm::abs(bounds.hi));
   return 0x1p-16 * std::max({glm::length(bounds.extent()), reach.x, reach.y, reach.z});
+}
+
+int side_of(int rays) {
+  return std::max(1, static_cast<int>(std::sqrt(static_cast<double>(rays))));
+}
+
+CameraBasis::CameraBasis(const scene::Camera& camera)
+    : forward(glm::normalize(camera.at - camera.from)),
+      right(glm::normalize(glm::cross(forward, camera.up))),
+      up(glm::cross(right, forward)),
+      half_height(std::tan(camera.vertical_fov / 2)) {}
+
+Ray make_ray(const dvec3& origin, const dvec3& along, double t_max, double t_min) {
+  const double length = glm::length(along);
+  Ray ray{};
+  for (int k = 0; k < 3; ++k) {
+    ray.origin[k] = static_cast<float>(origin[k]);
+    ray.direction[k] = static_cast<float>(along[k] / length);
+  }
+  ray.t_min = static_cast<float>(t_min * length);
+  ray.t_max = static_cast<float>(t_max * length);
+  return ray;
+}
+
+Meeting::Meeting(const Surfaces& surfaces, const Ray& ray, const Hit& hit) {
+  const dvec3 direction = double_of(ray.direction);
+  position = double_of(ray.origin) + direction * double{hit.t};
+  incoming = glm::normalize(direction);
+  normal = surfaces.normal(static_cast<std::uint32_t>(hit.primitive), position);
+  if (glm::dot(normal, direction) > 0) normal = -normal;
 }
 
 std::vector<RayClass> make_classes(const scene::Scene& scene, std::span<const std::string> names, int side,

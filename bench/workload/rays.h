@@ -14,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bench/workload/surfaces.h"
 #include "kdray/kdray.h"
 #include "scene/model/scene.h"
 
@@ -30,6 +31,29 @@ std::span<const std::string_view> class_names();
 
 // How far secondary rays begin from their surface: 2^-16 of the scene's size or distance from the origin.
 double offset_of(const scene::Scene& scene);
+
+// Pixels across and down of a square picture of up to so many.
+int side_of(int rays);
+
+// How a camera looks: unit vectors, and half of the picture's height at distance 1.
+struct CameraBasis {
+  explicit CameraBasis(const scene::Camera& camera);
+
+  dvec3 forward, right, up;
+  double half_height;
+};
+
+// Its direction is that of `along`, which may have any length; the interval is in multiples of it.
+Ray make_ray(const dvec3& origin, const dvec3& along, double t_max, double t_min = 0);
+
+// Where a ray has met a surface.
+struct Meeting {
+  Meeting(const Surfaces& surfaces, const Ray& ray, const Hit& hit);
+
+  dvec3 position;
+  dvec3 incoming;  // unit
+  dvec3 normal;    // unit, on the side that the ray came from
+};
 
 // Finds the closest hits of rays, so that secondary ones can be made of them.
 using Tracer = std::function<std::vector<Hit>(std::span<const Ray>)>;

@@ -3,11 +3,9 @@
 #include <charconv>
 #include <cstdlib>
 #include <filesystem>
-#include <numbers>
 #include <optional>
 
 #include "base/error.h"
-#include "bench/workload/meadow.h"
 #include "scene/generate/built_in.h"
 #include "scene/generate/displaced_sphere.h"
 #include "scene/import/load.h"
@@ -20,27 +18,24 @@ namespace {
 constexpr std::string_view kDisplaced = "displaced:";
 constexpr std::size_t kMostTriangles = 100000000;
 
-constexpr double degrees(double angle) {
-  return angle * std::numbers::pi / 180;
-}
-
 struct Data {
   const char *name, *file;
   std::optional<scene::Camera> camera;  // of rooms: within
 };
 
 const std::vector<Data>& all_data() {
-  static const std::vector<Data> all = {
-      {"sponza", "interior/dabrovic_sponza/sponza.obj.xz",
-       scene::Camera{.from = {14.4499, 6.89415, -1.18547},
-                     .at = {13.4563, 6.78438, -1.15861},
-                     .up = {-0.109708, 0.993957, 0.00374357},
-                     .vertical_fov = degrees(74)}},
-      {"conference", "interior/conference/conference.ply.xz",
-       scene::Camera{
-           .from = {1000, 300, -800}, .at = {-200, 100, 200}, .up = {0, 1, 0}, .vertical_fov = degrees(60)}},
-      {"armadillo", "stanford/armadillo_86k.ply.xz", {}},
-      {"dragon", "stanford/dragon_vrip.ply.xz", {}}};
+  static const std::vector<Data> all = {{"sponza", "interior/dabrovic_sponza/sponza.obj.xz",
+                                         scene::Camera{.from = {14.4499, 6.89415, -1.18547},
+                                                       .at = {13.4563, 6.78438, -1.15861},
+                                                       .up = {-0.109708, 0.993957, 0.00374357},
+                                                       .vertical_fov = glm::radians(74.0)}},
+                                        {"conference", "interior/conference/conference.ply.xz",
+                                         scene::Camera{.from = {1000, 300, -800},
+                                                       .at = {-200, 100, 200},
+                                                       .up = {0, 1, 0},
+                                                       .vertical_fov = glm::radians(60.0)}},
+                                        {"armadillo", "stanford/armadillo_86k.ply.xz", {}},
+                                        {"dragon", "stanford/dragon_vrip.ply.xz", {}}};
   return all;
 }
 

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "bench/modes/lives.h"
-#include "bench/povray/pov_writer.h"
+#include "bench/povray/povray.h"
 #include "bench/workload/kinds.h"
 #include "bench/workload/rays.h"
 #include "bench/workload/surfaces.h"

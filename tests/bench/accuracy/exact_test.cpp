@@ -64,7 +64,7 @@ TEST(ExactScene, ThePenumbraIsTheMeanOfTheLightThatIsSeen) {
 }
 
 TEST(ExactScene, IsNoOtherScene) {
-  for (const std::string& name : exact_scene_names()) EXPECT_TRUE(exact_scene(name)) << name;
+  for (const char* const name : {"chessboard", "penumbra"}) EXPECT_TRUE(exact_scene(name)) << name;
   EXPECT_FALSE(exact_scene("balls"));
 }
 

@@ -1,6 +1,6 @@
 // What    The Pareto front: against the definition, for all points of random sets, and in the cases where one
 //         may slip.
-#include "bench/accuracy/pareto.h"
+#include "bench/accuracy/answers.h"
 
 #include <gtest/gtest.h>
 

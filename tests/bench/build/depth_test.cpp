@@ -1,6 +1,6 @@
 // What    The depths that are tried begin at a lone leaf, hold the usual one, and end within the traversal's
 //         stack.
-#include "bench/build/depth.h"
+#include "bench/build/bench.h"
 
 #include <gtest/gtest.h>
 

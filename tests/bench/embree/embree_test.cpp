@@ -11,9 +11,9 @@
 
 #include "api/statistics_json.h"
 #include "apps/cli/program.h"
-#include "bench/embree/whitted.h"
-#include "bench/race/compare_hits.h"
-#include "bench/workload/flock.h"
+#include "bench/embree/embree.h"
+#include "bench/race/compare.h"
+#include "bench/workload/scenes.h"
 #include "conformance/all_kinds.h"
 #include "scene/generate/built_in.h"
 #include "scene/generate/displaced_sphere.h"

@@ -18,7 +18,7 @@ ModesRow row(const std::string& scheme, int queues, double seconds) {
 ModesRun run(double ratio) {
   ModesRun made;
   made.scene = "scene.nff";
-  made.cores = 2;
+  made.machine.cores = 2;
   made.rows = {row("sequential", 1, 8), row("pdprt bag", 2, 4), row("odprt pilot", 2, 4 * ratio),
                row("pdprt bag", 4, 4)};
   made.rows.push_back({"odprt pilot", 4, 2, "no more memory"});

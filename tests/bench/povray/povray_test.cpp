@@ -5,7 +5,7 @@
 
 #include <sstream>
 
-#include "bench/povray/pov_writer.h"
+#include "bench/povray/povray.h"
 
 namespace kdray::bench {
 namespace {

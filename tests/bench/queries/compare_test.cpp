@@ -1,5 +1,5 @@
 // What    What counts as another answer in `kdray bench queries`.
-#include "bench/queries/compare.h"
+#include "bench/race/compare.h"
 
 #include <gtest/gtest.h>
 

@@ -6,9 +6,8 @@
 
 #include "apps/cli/program.h"
 #include "bench/embree/embree.h"
-#include "bench/embree/sides.h"
-#include "bench/queries/compare.h"
-#include "bench/queries/kdray_side.h"
+#include "bench/queries/bench.h"
+#include "bench/race/compare.h"
 
 namespace kdray::bench {
 namespace {

@@ -33,7 +33,7 @@ TEST(BuildRace, TakesTurnsAndDropsTheWarmUp) {
 }
 
 TEST(BuildRace, ClocksTellWallAndCpuTimeApart) {
-  const BuildClock clock;
+  const Stopwatch clock;
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
   EXPECT_GE(clock.wall(), 0.05);
   EXPECT_LT(clock.cpu(), clock.wall());
@@ -41,7 +41,7 @@ TEST(BuildRace, ClocksTellWallAndCpuTimeApart) {
 
 TEST(BuildRace, TimesOfABuildAreThoseOfItsParts) {
   const scene::Scene scene = generate::displaced_sphere_of(2000);
-  const BuildClock clock;
+  const Stopwatch clock;
   const BuildTimes times = time_build(scene, scene::make_geometry(scene), {});
   EXPECT_GT(times.tree, 0);
   EXPECT_GT(times.flatten, 0);

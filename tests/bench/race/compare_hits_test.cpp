@@ -1,5 +1,5 @@
 // What    What counts as another hit, and what as the same.
-#include "bench/race/compare_hits.h"
+#include "bench/race/compare.h"
 
 #include <gtest/gtest.h>
 

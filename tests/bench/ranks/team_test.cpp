@@ -6,7 +6,7 @@
 
 #include <atomic>
 
-#include "bench/ranks/ping_pong.h"
+#include "bench/ranks/bench.h"
 
 namespace kdray::bench {
 namespace {

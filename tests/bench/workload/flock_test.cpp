@@ -1,6 +1,6 @@
 // What    A flock has as many instances as were asked for, as far apart, turned and mirrored; each stands
 //         about its place, and the camera sees something.
-#include "bench/workload/flock.h"
+#include "bench/workload/scenes.h"
 
 #include <gtest/gtest.h>
 
