@@ -43,7 +43,14 @@ void check_channels(const RenderOptions& options, const prepare::Prepared& scene
   const std::span<const std::string> by_binary_walk =
       of_instances ? std::span<const std::string>() : std::span<const std::string>(options.channels);
   check_form(takes_binary_form(options.traversal, options.precision, by_binary_walk), scene);
-  if (of_instances && std::ranges::find(options.channels, "cost") != options.channels.end())
+  const auto has = [&](const char* name) {
+    return std::ranges::find(options.channels, name) != options.channels.end();
+  };
+  if (scene.doubles && scene.doubles->copies.size() > 0 && (has("primitive") || has("instance")))
+    throw Error(ErrorCode::usage,
+                "the channels primitive and instance can't number the copies that double geometry makes of "
+                "instances; take float geometry for these");
+  if (of_instances && has("cost"))
     prepare::refuse_instances(scene, "the channel cost, which counts the binary walk's steps,");
 }
 

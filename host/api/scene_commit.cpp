@@ -131,7 +131,10 @@ std::optional<PreparedScene> Scene::Impl::refit(const CommitOptions& options, Co
     report = {true, growth};
     return committed->scene();
   }
-  if (last.doubles) return std::nullopt;  // their space is exact for the vertices that it was made for
+  // Doubles have a space that is exact for the vertices that it was made for.
+  if (last.doubles) return std::nullopt;
+  if (changes.vertices && prepare::answers_in_doubles(model(), options.tree.geometry, last.geometry.space))
+    return std::nullopt;
   if (has_instances) return replace_instances(report);
   if (!fitting) fitting = std::make_unique<const prepare::Fitting>(last);
   prepare::Refitted made = prepare::refit(model(), last, *fitting, options.refit_growth);

@@ -361,6 +361,14 @@ def test_geometry_is_double_by_itself_where_vertices_are_no_floats(ball_mesh):
     def with_instances(scene):
         scene.add_instances(scene.add_mesh(corners + 1e-12, triangles, prototype=True), np.eye(4))
 
+    moving = kdray.Scene(geometry="auto")
+    mesh = moving.add_mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    assert moving.geometry == "float"
+    moving.update_vertices(mesh, [[0, 0, 0], [1 + 2**-40, 0, 0], [0, 1, 0]])
+    assert moving.geometry == "double"
+    moving.update_vertices(mesh, [[0, 0, 0], [1, 0, 0], [0, 1, 0]])
+    assert moving.geometry == "float"
+
     assert geometry_of(with_a_sphere) == geometry_of(with_instances) == "float"
     assert kdray.Scene().geometry == "float"
 

@@ -2,6 +2,7 @@
 // answers as a mesh of these corners does, which double_scene_test.cpp holds against rationals.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
@@ -187,6 +188,23 @@ TEST_P(DoubleInstances, HaveMasks) {
     is_same_place(geometry[i], instance[i], geometry_apart[i]);
     ASSERT_TRUE(geometry_apart[i] == kNoGeometry ||
                 (masks[i] & (geometry_apart[i] == 0 ? kOwnMask : kPlacedMask)) != 0);
+  }
+}
+
+TEST_P(DoubleInstances, AreHiddenByAMaskOfNothing) {
+  placed_.set_mask(instances_, 0);
+  placed_.commit(options_);
+  for (const std::size_t copies : {1, 12}) {
+    const RayList list = repeated(copies);
+    const std::size_t n = list.origins.size();
+    std::vector<std::uint32_t> geometry(n), counts(n);
+    placed_.closest(list.rays(), {.geometry = geometry});
+    placed_.count(list.rays(), counts);
+    EXPECT_EQ(std::ranges::count(geometry, instances_), 0);
+    EXPECT_GT(std::ranges::count(geometry, own_id_), 20);
+    const AllHits all = placed_.all(list.rays());
+    EXPECT_EQ(std::ranges::count(all.geometry, instances_), 0);
+    for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(counts[i], all.splits[i + 1] - all.splits[i]) << i;
   }
 }
 

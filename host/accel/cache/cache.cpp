@@ -104,7 +104,8 @@ std::optional<prepare::Prepared> find(const CacheOptions& cache, const fs::path&
 
 bool keep(const CacheOptions& cache, const prepare::Prepared& prepared) {
   const std::vector<FileRead>& files = prepared.settings.files;
-  if (cache.folder.empty() || files.empty() || !files.front().content || prepared.doubles) return false;
+  if (cache.folder.empty() || files.empty() || !files.front().content) return false;
+  if (prepared.tree_options.geometry != VertexPrecision::float32) return false;  // nor is it looked for
   const std::uint64_t bytes = entry_bytes(prepared);
   if (bytes < cache.min_bytes || bytes > cache.max_bytes / 4) return false;
   const fs::path scene = files.front().path;

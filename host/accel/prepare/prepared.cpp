@@ -112,10 +112,6 @@ bool has_shapes(const scene::Scene& scene) {
   return scene.primitive_count() != scene.triangles.size();
 }
 
-bool may_be_in_doubles(const scene::Scene& scene) {
-  return !has_shapes(scene) && scene.instances.empty();
-}
-
 Prepared prepare_as(const TreeOptions& options, const scene::Scene& scene, const scene::Geometry& geometry) {
   const kdtree::BuildConfig config = config_of(options, std::max(geometry.size(), largest_mesh(scene)));
   return options.memory_bytes > 0
@@ -134,7 +130,8 @@ Prepared prepare_copied(const scene::Scene& scene, scene::Copies copies, const T
 
 // The scene's instances become copies: a vertex is where its transform brings it in doubles.
 Prepared prepare_in_doubles(const scene::Scene& scene, const TreeOptions& options) {
-  if (has_shapes(scene) || std::ranges::any_of(scene.meshes, [](const auto& m) { return has_shapes(*m); }))
+  const auto is_of_shapes = [&](const scene::Instance& i) { return has_shapes(*scene.meshes[i.mesh]); };
+  if (has_shapes(scene) || std::ranges::any_of(scene.instances, is_of_shapes))
     throw input_error(scene.name, 0, "primitives other than triangles, which a scene of doubles doesn't have",
                       "leave them out, or ask about it in floats");
   if (scene.instances.empty()) return prepare_copied(scene, {}, options);
@@ -145,15 +142,22 @@ Prepared prepare_in_doubles(const scene::Scene& scene, const TreeOptions& option
 
 }  // namespace
 
+bool answers_in_doubles(const scene::Scene& scene, VertexPrecision geometry,
+                        const std::optional<LocalSpace>& space) {
+  if (geometry != VertexPrecision::automatic) return geometry == VertexPrecision::float64;
+  return !has_shapes(scene) && scene.instances.empty() &&
+         !scene::fits_floats(scene, space ? *space : scene::space_of(scene.bounds(), scene.name));
+}
+
 Prepared prepare(const scene::Scene& scene, const TreeOptions& options,
                  const std::optional<LocalSpace>& kept) {
   const Timer timer;
-  const bool in_doubles =
-      options.geometry == VertexPrecision::float64 ||
-      (options.geometry == VertexPrecision::automatic && may_be_in_doubles(scene) && !fits_floats(scene));
+  const bool is_automatic = options.geometry == VertexPrecision::automatic;
+  const bool in_doubles = answers_in_doubles(scene, options.geometry);
   Prepared made = in_doubles ? prepare_in_doubles(scene, options)
-                             : prepare_as(options, scene, scene::make_geometry(scene, kept));
-  if (in_doubles && options.geometry == VertexPrecision::automatic)
+                             : prepare_as(options, scene,
+                                          scene::make_geometry(scene, is_automatic ? std::nullopt : kept));
+  if (in_doubles && is_automatic)
     made.settings.warnings.push_back(
         "its vertices are no floats: questions are answered in doubles (slower)");
   made.tree_options = options;

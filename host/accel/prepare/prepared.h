@@ -82,6 +82,11 @@ struct Prepared {
 // Returns what the tree of a scene of n primitives is built with.
 kdtree::BuildConfig config_of(const TreeOptions& options, std::size_t n_primitives);
 
+// Returns whether questions about the scene are answered in doubles. `space`: the one that its floats would
+// be in; else its own.
+bool answers_in_doubles(const scene::Scene& scene, VertexPrecision geometry,
+                        const std::optional<LocalSpace>& space = {});
+
 // Prepares a scene. `kept`: the space that it had before it moved (scene::make_geometry).
 Prepared prepare(const scene::Scene& scene, const TreeOptions& options,
                  const std::optional<LocalSpace>& kept = {});

@@ -45,7 +45,8 @@ DoubleScene::DoubleScene(const prepare::Prepared& scene, const GeometryTable& ta
       doubles_(scene.doubles.get()),
       table_(&table),
       reach_(world_max(scene.geometry.bounds)),
-      margin_(kBoxes * reach_) {}
+      margin_(kBoxes * reach_),
+      has_every_bit_(table.has_every_bit()) {}
 
 // A triangle that may be hit: t lies between these.
 struct DoubleScene::Candidate {
@@ -152,7 +153,7 @@ std::uint32_t DoubleScene::number_of(std::uint32_t triangle) const {
 }
 
 bool DoubleScene::is_seen(std::uint32_t triangle, std::uint32_t mask) const {
-  return mask == 0xffffffffu || (table_->mask_of(number_of(triangle)) & mask) != 0;
+  return has_every_bit_ ? mask != 0 : (table_->mask_of(number_of(triangle)) & mask) != 0;
 }
 
 void DoubleScene::closest(std::span<const Question> questions,

@@ -89,6 +89,7 @@ class DoubleScene {
   const scene::DoubleTriangles* doubles_;
   const GeometryTable* table_;
   double reach_, margin_;
+  bool has_every_bit_;  // in all of the table's masks
 };
 
 template <class LineOf, class TriangleOf, class Told>

@@ -47,9 +47,13 @@ std::optional<GeometryId> GeometryTable::only() const {
   return geometries_.size() == 1 && instances_.empty() ? std::optional(geometries_.front().id) : std::nullopt;
 }
 
+bool GeometryTable::has_every_bit() const {
+  const auto has = [](const Geometry& g) { return g.mask == 0xffffffffu; };
+  return std::ranges::all_of(geometries_, has) && std::ranges::all_of(instances_, has);
+}
+
 std::vector<std::uint32_t> GeometryTable::masks(std::span<const std::uint32_t> instances) const {
-  const auto sees_all = [](const Geometry& g) { return g.mask == 0xffffffffu; };
-  if (std::ranges::all_of(geometries_, sees_all) && std::ranges::all_of(instances_, sees_all)) return {};
+  if (has_every_bit()) return {};
   std::vector<std::uint32_t> masks;
   if (!instances.empty()) {
     masks.push_back(static_cast<std::uint32_t>(1 + instances.size()));

@@ -35,6 +35,7 @@ class GeometryTable {
   // a copy.
   Place of(std::uint32_t number, std::uint32_t instance = kNoInstance) const;
   bool has_instances() const { return !instances_.empty(); }
+  bool has_every_bit() const;  // in all of its masks
   std::uint32_t mask_of(std::uint32_t number) const {
     return is_copied(number) ? mask_of_instance(copy_of(number)) : holder(geometries_, number).mask;
   }

@@ -249,11 +249,12 @@ Geometry make_geometry_for_doubles(const Scene& scene) {
   return Maker(space_of(scene.bounds(), scene.name), scene, true).make();
 }
 
-bool fits_floats(const Scene& scene) {
-  const LocalSpace space = space_of(scene.bounds(), scene.name);
-  return std::ranges::all_of(scene.vertices, [&](const dvec3& v) {
-    const dvec3 local = space.local(v);
-    return dvec3(vec3(local)) == local;
+bool fits_floats(const Scene& scene, const LocalSpace& space) {
+  return std::ranges::all_of(scene.triangles, [&](const Triangle& t) {
+    return std::ranges::all_of(t.vertex, [&](std::uint32_t v) {
+      const dvec3 local = space.local(scene.vertices[v]);
+      return dvec3(vec3(local)) == local;
+    });
   });
 }
 

@@ -82,8 +82,8 @@ DoubleTriangles make_double_triangles(const Scene& scene, const Geometry& geomet
 // floats meets it.
 Geometry make_geometry_for_doubles(const Scene& scene);
 
-// Returns whether floats about the scene's centre are its vertices to the bit.
-bool fits_floats(const Scene& scene);
+// Returns whether the floats of this space are its triangles' corners to the bit.
+bool fits_floats(const Scene& scene, const LocalSpace& space);
 
 // Makes the geometry in `kept`, where the scene keeps_space(), or else in a space of its own.
 Geometry make_geometry(const Scene& scene, const std::optional<LocalSpace>& kept = {});

@@ -136,10 +136,19 @@ bool worth_keeping(std::uint64_t primitives, std::uint64_t copies) {
 
 namespace {
 
-void check_capacity(const Scene& mesh, const Scene& scene) {
-  if (std::uint64_t{scene.primitive_count()} + mesh.primitive_count() >= KDRAY_REF_INDEX_MASK ||
-      scene.vertices.size() + mesh.vertices.size() >= kNone ||
-      scene.normals.size() + mesh.normals.size() >= kNone)
+// What there would be of a scene with copies.
+struct Amount {
+  std::uint64_t primitives, vertices, normals;
+
+  explicit Amount(const Scene& scene)
+      : primitives(scene.primitive_count()), vertices(scene.vertices.size()), normals(scene.normals.size()) {}
+  void add(const Amount& mesh) {
+    primitives += mesh.primitives, vertices += mesh.vertices, normals += mesh.normals;
+  }
+};
+
+void check_capacity(const Amount& all, const Scene& scene) {
+  if (all.primitives >= KDRAY_REF_INDEX_MASK || all.vertices >= kNone || all.normals >= kNone)
     throw input_error(scene.name, 0, "copies of its meshes make 2^28 primitives or more",
                       "leave --instances flat out, or ask about it in floats");
 }
@@ -153,7 +162,9 @@ dmat4 matrix_of(const Instance& instance) {
 }  // namespace
 
 void add_copy(const Scene& mesh, const Instance& instance, Scene& scene) {
-  check_capacity(mesh, scene);
+  Amount all(scene);
+  all.add(Amount(mesh));
+  check_capacity(all, scene);
   Scene part;
   part.vertices = mesh.vertices;
   part.normals = mesh.normals;
@@ -186,6 +197,11 @@ Copies flatten_instances(Scene& scene) {
   Copies copies;
   const auto instances = std::exchange(scene.instances, {});
   const auto meshes = std::exchange(scene.meshes, {});
+  Amount all(scene);
+  for (const Instance& instance : instances) all.add(Amount(*meshes[instance.mesh]));
+  check_capacity(all, scene);
+  scene.vertices.reserve(all.vertices);
+  scene.normals.reserve(all.normals);
   for (const Instance& instance : instances) {
     copies.first.push_back(scene.primitive_count());
     copies.is_mirrored.push_back(glm::determinant(instance.linear) < 0);
