@@ -401,7 +401,7 @@ static void check_double_geometry(void) {
   kdray_rays rays = {0};
   kdray_hits hits = {0};
   kdray_commit_options options = {0};
-  options.size = sizeof options, options.geometry = 2;
+  options.size = sizeof options, options.geometry = 3;
   rays.size = sizeof rays, rays.origins = origin, rays.directions = direction;
   hits.size = sizeof hits, hits.t = t_out, hits.primitive = primitive_out;
   expect(kdray_scene_new(&scene) == KDRAY_OK, "a scene of doubles");

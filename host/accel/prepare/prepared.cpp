@@ -159,7 +159,7 @@ Prepared prepare(const scene::Scene& scene, const TreeOptions& options,
                                           scene::make_geometry(scene, is_automatic ? std::nullopt : kept));
   if (in_doubles && is_automatic)
     made.settings.warnings.push_back(
-        "its vertices are no floats: questions are answered in doubles (slower)");
+        "the scene's vertices are no floats: questions are answered in doubles, which takes longer");
   made.tree_options = options;
   made.seconds.build = timer.seconds() - made.seconds.flatten;
   return made;
