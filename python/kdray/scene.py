@@ -78,9 +78,10 @@ class _Added:
 class Scene:
     """Geometries by id, and what can be asked of them.
 
-    ``Scene(device="auto")`` is empty; `kdray.load` reads a file. Add meshes, spheres, cones, discs, tori and capsules, in
-    whatever units they are (float64 vertices keep what float32 would lose: the scene is moved to its own centre
-    first), then ask. The first question after a change builds the tree; `commit` does so at a time of your choosing.
+    ``Scene(device="auto")`` is empty; `kdray.load` reads a file. Add meshes, spheres, cones, discs, tori and
+    capsules, in whatever units they are (float64 vertices keep what float32 would lose: the scene is moved to its own
+    centre first), then ask. The first question after a change builds the tree; `commit` does so at a time of your
+    choosing.
 
     Any number of threads may ask one scene at once; one thread at a time may change it. Questions let go of the GIL,
     and Ctrl-C ends them.
