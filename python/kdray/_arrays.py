@@ -147,6 +147,19 @@ def for_writing(array: Array, shape: Shape, types: tuple[type, ...], name: str) 
     return array
 
 
+def _limit(value: ArrayLike, of_rays: Any) -> ArrayLike:
+    """A t_min or t_max: a number of Python's is of the rays' type, as in NumPy's own arithmetic, where that holds it.
+
+    (A single double among floats would have all rays traced as doubles.)
+    """
+    if type(value) not in (int, float) or of_rays != np.float32 or abs(value) > 1e300:
+        return value
+    with np.errstate(over="ignore", under="ignore"):
+        single = np.float32(value)
+    holds = bool(np.isfinite(single)) == math.isfinite(value) and (single == 0) == (value == 0)
+    return single if holds else value
+
+
 class RayArrays:
     """Rays as `kdray._core` takes them, and the shape of their results."""
 
@@ -168,9 +181,9 @@ class RayArrays:
         self.t_max: Floats | None = None
         self.masks: Array | None = None
         if not (isinstance(t_min, (int, float)) and t_min == 0):
-            self.t_min, shapes["t_min"] = scalars(t_min, "t_min")
+            self.t_min, shapes["t_min"] = scalars(_limit(t_min, self.dtype), "t_min")
         if not (isinstance(t_max, float) and t_max == np.inf):
-            self.t_max, shapes["t_max"] = scalars(t_max, "t_max")
+            self.t_max, shapes["t_max"] = scalars(_limit(t_max, self.dtype), "t_max")
         if mask is not None:
             self.masks, shapes["mask"] = masks(mask)
         wide = {shape for shape in shapes.values() if shape}

@@ -89,7 +89,7 @@ class Scene:
     Shapes: rays are two arrays of shape (..., 3) of float32 or float64, in any layout; results have the shape (...).
     Origins, directions, t_min, t_max and masks are broadcast against each other as NumPy does: (5, 1, 3) and (1, 4, 3)
     are rays of shape (5, 4), and what has a single row is the same for all. Masked arrays are an InputError where an
-    element is masked. Hits lie where ``t_min < t < t_max``, and t
+    element is masked. Hits lie where ``t_min < t < t_max``, numbers of the rays' own type, and t
     counts in multiples of the direction. (Of hits in the start point itself, t = 0, `count_hits` and `all_hits` know
     where t_min is 0.)
 

@@ -190,6 +190,22 @@ def test_one_row_for_all_is_not_copied(ball):
     np.testing.assert_array_equal(scene.bounds, [[-1, -1, 4], [1, 1, 6]])
 
 
+@pytest.mark.parametrize("t", [5, 5.0, 0.1, -2, 1e-30, float("nan")])
+def test_a_number_that_limits_float32_rays_is_one_of_theirs(t):
+    rows = np.zeros((4, 3), np.float32)
+    rays = _arrays.RayArrays(rows, rows, t, t, None)
+    assert rays.t_min is not None and rays.t_min.dtype == np.float32
+    assert rays.t_max is not None and rays.t_max.dtype == np.float32
+    assert _arrays.RayArrays(rows.astype(np.float64), rows, t, t, None).t_min.dtype == np.float64
+    assert _arrays.RayArrays(rows, rows, np.float64(t), t, None).t_min.dtype == np.float64
+
+
+@pytest.mark.parametrize("t", [1e-50, -1e-50, 1e39, 1e305, -1e200])
+def test_a_limit_that_no_float32_holds_stays_a_double(t):
+    rows = np.zeros((4, 3), np.float32)
+    assert _arrays.RayArrays(rows, rows, t, 1, None).t_min.tolist() == [t]
+
+
 def test_rays_are_broadcast_as_numpy_does(ball, rng):
     origins, directions = rng.normal(size=(5, 1, 3)) * 0.4, rng.normal(size=(1, 4, 3))
     t_max, mask = rng.uniform(0.1, 1, (4,)), np.array([[1], [1], [0], [1], [1]])
