@@ -8,7 +8,6 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
-#include <ranges>
 
 #include "accel/flatten/features.h"
 #include "api/hooks.h"
@@ -68,12 +67,13 @@ class AblationScene {
   std::vector<Ablation> wanted_of(const std::vector<Ablation>& all) const {
     if (options_.only.empty()) return all;
     std::vector<Ablation> wanted;
+    std::vector<std::string> names;
+    for (const Ablation& ablation : all) names.push_back(ablation.name);
     for (const std::string& name : options_.only) {
       const auto place = std::ranges::find(all, name, &Ablation::name);
       if (place == all.end())
-        throw Error(ErrorCode::usage,
-                    fmt::format("--only '{}': of {} this can be taken away: {}", name, name_,
-                                fmt::join(all | std::views::transform(&Ablation::name), ", ")));
+        throw Error(ErrorCode::usage, fmt::format("--only '{}': of {} this can be taken away: {}", name,
+                                                  name_, fmt::join(names, ", ")));
       wanted.push_back(*place);
     }
     return wanted;

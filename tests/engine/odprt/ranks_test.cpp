@@ -37,7 +37,7 @@ struct FrameSettings {
 
 class OdprtRanksTest : public test::EachDevice {
  protected:
-  const Hall hall;
+  const Hall hall{};
 
   Request request_of(const device::Context& context, wavefront::Programs& programs,
                      const FrameSettings& settings) const {

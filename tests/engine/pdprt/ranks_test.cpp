@@ -25,7 +25,7 @@ const wavefront::Schedule kOfRanks{
 
 class RanksTest : public test::EachDevice {
  protected:
-  const Hall hall;
+  const Hall hall{};
 
   // `queues_of`: of each rank. What rank 0 has; what the ranks throw is thrown, rank 0's first.
   Result render(const std::vector<int>& queues_of, const Task& wanted,

@@ -39,7 +39,7 @@ std::uint64_t rays_of(const Result& result) {
 
 class RenderTest : public test::EachDevice {
  protected:
-  const Hall hall;
+  const Hall hall{};
   const device::Context one{GetParam(), 1, 0, test::kept_programs()};
   const Result reference = hall.render(one, wavefront::Schedule{});
 

@@ -208,7 +208,7 @@ TEST_P(ScheduleTest, APoolThatIsTooSmallIsAnErrorNotAWrongPicture) {
 // However little a device gives in one piece, a schedule that was made to fit has no larger buffer, and keeps
 // what it can.
 TEST(Schedule, FitsIntoWhatADeviceGivesInOnePiece) {
-  const Hall hall;
+  const Hall hall{};
   const RenderOptions options = flatten::resolved(Hall::options(), {});
   const layout::Frame scene_frame = flatten::make_frame(hall.scene, hall.geometry, options);
   const Schedule wanted{.n_slices = 2112};
