@@ -44,6 +44,25 @@ wavefront::FilmPiece film_of(layout::u32 first, layout::u32 last, const layout::
   return {first_row * frame.width, (end_row - first_row) * frame.width};
 }
 
+// Tiles in the order in which they lie in the picture. By marks, since sorting thousands of them took a
+// twentieth of a small frame.
+std::vector<layout::u32> in_rows(std::span<const layout::u32> tiles, const layout::Frame& frame) {
+  std::vector<std::uint8_t> is_there(frame.n_tiles);
+  for (const layout::u32 tile : tiles)
+    is_there[KDRAY_TILE_ROW(tile) * frame.n_tiles_x + KDRAY_TILE_COLUMN(tile)] = 1;
+  std::vector<layout::u32> in_order;
+  in_order.reserve(tiles.size());
+  for (layout::u32 i = 0; i < frame.n_tiles; ++i)
+    if (is_there[i]) in_order.push_back(KDRAY_TILE(i % frame.n_tiles_x, i / frame.n_tiles_x));
+  return in_order;
+}
+
+std::vector<layout::u32> sorted(std::span<const layout::u32> runs) {
+  std::vector<layout::u32> in_order(runs.begin(), runs.end());
+  std::ranges::sort(in_order);
+  return in_order;
+}
+
 // Divides entries, which are in order, so that none of the film's pieces has more places than asked for, if a
 // row of tiles has not.
 std::vector<Delivery> deliveries_of(std::span<const layout::u32> entries, const layout::Frame& frame,
@@ -138,8 +157,7 @@ void Queue::serve(Tiles& tiles, const Work& work, Shared& shared) {
 void Queue::deliver(std::span<const layout::u32> tiles, const Work& work, Shared& shared) {
   if (tiles.empty()) return wavefront_.finish();  // another queue was faster
   if (work.samples.empty()) note_costs(tiles, shared);
-  std::vector<layout::u32> in_order(tiles.begin(), tiles.end());
-  std::ranges::sort(in_order);
+  const std::vector<layout::u32> in_order = work.samples.empty() ? in_rows(tiles, frame_) : sorted(tiles);
   const std::vector<Delivery> deliveries =
       deliveries_of(in_order, frame_, work.samples.empty(), wavefront_.film_piece());
   std::vector<wavefront::FilmPiece> pieces;
