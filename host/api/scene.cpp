@@ -19,6 +19,19 @@ namespace {
   throw Error(ErrorCode::usage, fmt::format("there is no geometry {}", id));
 }
 
+DBox bounds_of(const prepare::Prepared& prepared) {
+  DBox local;
+  if (const auto& doubles = prepared.doubles) {
+    for (const auto& corners : doubles->corners)
+      for (const std::uint32_t corner : corners) local.grow(doubles->vertices[corner]);
+  } else if (const Box& floats = prepared.geometry.bounds; !floats.empty()) {
+    local = {dvec3(floats.lo), dvec3(floats.hi)};
+  }
+  if (local.empty()) return local;
+  const LocalSpace& space = prepared.geometry.space;
+  return {space.world(local.lo), space.world(local.hi)};
+}
+
 }  // namespace
 
 scene::AddedGeometry& Scene::Impl::added(GeometryId id) {
@@ -305,11 +318,9 @@ std::uint32_t Scene::primitives() const {
 }
 std::optional<Extent> Scene::extent() const {
   const auto committed = impl_->last();
-  const auto& geometry = committed->scene().prepared().geometry;
-  if (geometry.bounds.empty()) return std::nullopt;
-  const dvec3 lo = geometry.space.world(dvec3(geometry.bounds.lo)),
-              hi = geometry.space.world(dvec3(geometry.bounds.hi));
-  return Extent{{lo.x, lo.y, lo.z}, {hi.x, hi.y, hi.z}};
+  const DBox box = bounds_of(committed->scene().prepared());
+  if (box.empty()) return std::nullopt;
+  return Extent{{box.lo.x, box.lo.y, box.lo.z}, {box.hi.x, box.hi.y, box.hi.z}};
 }
 const std::vector<std::string>& Scene::warnings() const {
   return impl_->base.warnings;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <utility>
 #include <vector>
@@ -175,6 +176,23 @@ TEST_P(DoubleScenes, OfAnySizeHitsAreThoseOfRationals) {
     SCOPED_TRACE(size);
     const DoubleMesh mesh = ring(9, 7, {size, -size, 2 * size}, size, random);
     holds(mesh, aimed(mesh, 200, size, random));
+  }
+}
+
+TEST_P(DoubleScenes, ExtentIsThatOfTheDoubles) {
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed + 9);
+  for (const double size : {1e-290, 1e-30, 1.0, 1e290}) {
+    SCOPED_TRACE(size);
+    const DoubleMesh mesh = ring(9, 7, {size, -size / 3, 2e6 * size}, size, random);
+    const std::optional<Extent> extent = scene_of(mesh).extent();
+    ASSERT_TRUE(extent);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [least, greatest] =
+          std::ranges::minmax(mesh.vertices, {}, [k](const Point& vertex) { return vertex[k]; });
+      EXPECT_EQ(extent->least[k], least[k]);
+      EXPECT_EQ(extent->greatest[k], greatest[k]);
+    }
   }
 }
 
