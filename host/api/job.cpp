@@ -31,8 +31,10 @@ void use_core(State& state, Job& job) {
   constexpr layout::Features kTraces = KDRAY_FEATURE_LIGHTS | KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT;
   if (!(job.features & kTraces) || job.frame.keep_weightless) return;
   if (!state.core) state.core = flatten::core_of(state.scene.flat);
-  // Without faces the frame's core stays empty: a program with faces then asks about none.
-  if (!state.core->has_faces) return;
+  // Without faces, or a floor around the core, the frame's core stays empty: a program that has code for them
+  // then asks about none.
+  const bool has_floor = job.frame.floor_radius > 0 && state.core->is_known;
+  if (!state.core->has_faces && !has_floor) return;
   state.core->apply(job.frame, state.scene.flat.lights);
   job.features |= KDRAY_FEATURE_FACES;
 }

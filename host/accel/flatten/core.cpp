@@ -87,6 +87,7 @@ Core core_of(const FlatScene& scene) {
 Core core_of(const Box& all, Sides sides) {
   Core core;
   if (sides.inner.empty()) return core;
+  core.is_known = true;
   core.lo = sides.inner.lo, core.hi = sides.inner.hi;
   // Where all triangles are in one plane, the face is on the side where the core is not.
   for (int k = 0; k < 3; ++k)
@@ -112,7 +113,7 @@ void Core::apply(layout::Frame& frame, const Array<layout::Light>& lights) const
   const float margin = kMargin * frame.world_max;
   for (std::size_t i = 0; i < std::min<std::size_t>(lights.size(), 32); ++i) {
     const layout::Light& light = lights[i];
-    bool inside = has_faces && light.kind != KDRAY_LIGHT_DIRECTIONAL;
+    bool inside = is_known && light.kind != KDRAY_LIGHT_DIRECTIONAL;
     for (int k = 0; k < 3; ++k) {
       const float reach = std::abs(light.across[k]) + std::abs(light.down[k]) + light.radius;  // of its area
       inside &= light.position[k] - reach - face_lo[k] > margin &&

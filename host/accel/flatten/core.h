@@ -2,7 +2,8 @@
 //         and has some lying in it, as a floor does; the *core* is the box of everything else, and of
 //         zero-area triangles (scene/model/zero_area.h) wherever they lie.
 // Why     What is on the inner side of the faces and stays there can only meet the core: one box tells that
-//         nothing is in the way of a ray (kernels/shade/open.clh, docs/design/skipping.md).
+//         nothing is in the way of a ray (kernels/shade/open.clh, docs/design/skipping.md). Without faces
+//         only what lies around the scene gains by it: the floor of the studio look.
 #pragma once
 
 #include "accel/flatten/flatten.h"
@@ -14,6 +15,7 @@ struct Core {
   vec3 lo = vec3(0), hi = vec3(0);
   vec3 face_lo = vec3(0), face_hi = vec3(0);  // infinite where no triangle lies in the plane
   bool has_faces = false;                     // whose triangles are not in the core
+  bool is_known = false;                      // not of a scene with instances, or of nothing
 
   // Writes them into the frame, with the lights that are on the inner side of all faces by a thousandth of
   // the scene.

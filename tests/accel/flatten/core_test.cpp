@@ -102,6 +102,10 @@ TEST(Core, IsEverythingWithoutFaces) {
       core_of(flat_of({triangle({0, 0, 2}, {1, 0, 2}, {1, 0.5f, 2})}, {sphere({1, 0, 2}, 1)})).has_faces);
   EXPECT_FALSE(core_of(flat_of({floor_at(0)}, {})).has_faces);
   EXPECT_FALSE(core_of(flat_of({}, {})).has_faces);
+  EXPECT_FALSE(core_of(flat_of({}, {})).is_known);
+  const Core ball = core_of(flat_of({}, {sphere({1, 0, 2}, 1)}));
+  EXPECT_TRUE(ball.is_known);
+  EXPECT_EQ(open_lights(ball, lights_at({{0, 0, 5}, {0, 0, -5}})), 0b11u);
 }
 
 TEST(Core, KnowsWhichLightsAreInside) {
