@@ -16,7 +16,7 @@
 #if KDRAY_PRECISION == 32  // the wide form has no other
 
 #if KDRAY_TRAVERSAL != KDRAY_TRAVERSAL_WIDE
-// See walk_rays of walk.clh.
+// See walk_rays of walk.clh, though no packets end early.
 static inline void collect_rays(const SceneArrays* scene, const RaySource* source, const Lists* lists,
                                 u32 first, u32 end, float world_max, float most_apart) {
   RayGroups coherent, others;

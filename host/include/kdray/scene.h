@@ -151,7 +151,7 @@ class Scene {
 
   std::uint32_t primitives() const;
   // The least and the greatest coordinates of what was committed; none where that is nothing. They contain
-  // all of it; those of floats are wider by no more than rounding.
+  // all that a ray can hit; those of floats are wider by no more than rounding.
   std::optional<Extent> extent() const;
   const std::vector<std::string>& warnings() const;  // what the loader left out or changed, one line each
   // All of it together. It is put together by the first call after a change: not for several threads at once.

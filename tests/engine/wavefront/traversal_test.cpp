@@ -17,6 +17,7 @@
 #include "oracle/build_scene.h"
 #include "oracle/primitives.h"
 #include "pictures/render.h"
+#include "scene/generate/displaced_sphere.h"
 #include "support/device.h"
 #include "support/scene_fields.h"
 
@@ -549,6 +550,21 @@ TEST_P(TraversalTest, Needles) {
   oracle::SceneBuilder b;
   add_needles(b, random, 600);
   expect_right(b.scene(), 18, 0.2);
+}
+
+// Rays side by side, from nowhere near one point, for which packets of a fine mesh end early.
+TEST_P(TraversalTest, PacketsThatFareBadly) {
+  const scene::Scene model = generate::displaced_sphere_of(100'000);
+  Random random(23);
+  std::vector<Ray> rays;
+  constexpr int kSide = 144;
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
+      const dvec3 across(1.3 * (2.0 * x / kSide - 1), 1.3 * (2.0 * y / kSide - 1), 3);
+      rays.push_back(make_ray(across, dvec3(0, 0, -1) + 0.02 * random.direction()));
+    }
+  Subject s(model, GetParam());
+  expect_walks_alike(s, rays, "side by side");
 }
 
 TEST_P(TraversalTest, AHugeLeaf) {
