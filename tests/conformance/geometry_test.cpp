@@ -63,6 +63,26 @@ TYPED_TEST(GeometryOf, GenerousBoundsContainTheOthers) {
     }
 }
 
+// Gives a shape that has an axis this one.
+template <class Shape>
+void turn(Shape& shape, const vec3& axis) {
+  if constexpr (requires { shape.axis; }) shape.axis = axis;
+  if constexpr (requires { shape.normal; }) shape.normal = axis;
+  if constexpr (requires { shape.apex; })
+    shape.apex = shape.base + glm::distance(shape.base, shape.apex) * axis;
+}
+
+// Where an axis is nearly that of a coordinate, 1 less its square is nearly nothing but rounding.
+TYPED_TEST(GeometryOf, GenerousBoundsContainThoseOfNearlyUprightShapes) {
+  if constexpr (TypeParam::kIsShape)
+    for (auto shape : this->kept())
+      for (int k = 0; k < 400; ++k) {
+        const float tilt = 1e-5f * std::pow(1.02f, static_cast<float>(k));
+        turn(shape, glm::normalize(vec3(0.3f * tilt, 1, tilt)));
+        ASSERT_TRUE(primitives::bounds_of(pack(shape)).contains(bounds_of(shape))) << "tilted by " << tilt;
+      }
+}
+
 kdtree::SplitBounds split(const scene::Geometry& g, kdtree::Ref ref, const Bounds& cell, int axis, float at) {
   kdtree::BoundedRef r{cell.lo, ref, cell.hi};
   return kdtree::clip_to_sides(g, r, cell, axis, at);

@@ -3,7 +3,7 @@
 //         zero-area triangles (scene/model/zero_area.h) wherever they lie.
 // Why     What is on the inner side of the faces and stays there can only meet the core: one box tells that
 //         nothing is in the way of a ray (kernels/shade/open.clh, docs/design/skipping.md). Without faces
-//         only what lies around the scene gains by it: the floor of the studio look.
+//         there is nothing but the studio's floor that rays leave from outside of the core.
 #pragma once
 
 #include "accel/flatten/flatten.h"
@@ -15,7 +15,7 @@ struct Core {
   vec3 lo = vec3(0), hi = vec3(0);
   vec3 face_lo = vec3(0), face_hi = vec3(0);  // infinite where no triangle lies in the plane
   bool has_faces = false;                     // whose triangles are not in the core
-  bool is_known = false;                      // not of a scene with instances, or of nothing
+  bool is_known = false;                      // not where there are instances, or nothing beside faces
 
   // Writes them into the frame, with the lights that are on the inner side of all faces by a thousandth of
   // the scene.

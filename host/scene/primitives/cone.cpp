@@ -69,9 +69,7 @@ layout::Cone pack(const ConeGeometry& g) {
 
 Box bounds_of(const layout::Cone& c) {
   const vec3 base(c.base[0], c.base[1], c.base[2]), axis(c.axis[0], c.axis[1], c.axis[2]);
-  // A circle across the axis reaches this far along each coordinate, for a radius of 1; the axis is of unit
-  // length but for rounding.
-  const vec3 across = glm::sqrt(glm::max(vec3(1e-5f), vec3(1) - axis * axis));
+  const vec3 across(disc_reach(dvec3(axis)));
   Box box = wide_box_around(base, c.base_radius * across);
   const float apex_radius = c.base_radius + c.slope * c.height + 1e-6f * (c.base_radius + c.height);
   box.grow(wide_box_around(base + c.height * axis, apex_radius * across + vec3(1e-6f * c.height)));

@@ -55,9 +55,7 @@ layout::Disc pack(const DiscGeometry& g) {
 
 Box bounds_of(const layout::Disc& d) {
   const vec3 normal(d.normal[0], d.normal[1], d.normal[2]);
-  // The normal is of unit length but for rounding.
-  const vec3 across = glm::sqrt(glm::max(vec3(1e-5f), vec3(1) - normal * normal));
-  return wide_box_around({d.center[0], d.center[1], d.center[2]}, d.radius * across);
+  return wide_box_around({d.center[0], d.center[1], d.center[2]}, d.radius * vec3(disc_reach(dvec3(normal))));
 }
 
 std::array<float, KDRAY_DISC_ROWS - 1> rows_of(const layout::Disc& d) {

@@ -65,8 +65,7 @@ layout::Torus pack(const TorusGeometry& g) {
 
 Box bounds_of(const layout::Torus& t) {
   const vec3 axis(t.axis[0], t.axis[1], t.axis[2]);
-  // The axis is of unit length but for rounding.
-  const vec3 across = glm::sqrt(glm::max(vec3(1e-5f), vec3(1) - axis * axis));
+  const vec3 across(disc_reach(dvec3(axis)));
   return wide_box_around({t.center[0], t.center[1], t.center[2]}, t.major_radius * across + t.minor_radius);
 }
 
