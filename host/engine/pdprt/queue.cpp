@@ -44,8 +44,8 @@ wavefront::FilmPiece film_of(layout::u32 first, layout::u32 last, const layout::
   return {first_row * frame.width, (end_row - first_row) * frame.width};
 }
 
-// Tiles in the order in which they lie in the picture. By marks, since sorting thousands of them took a
-// twentieth of a small frame.
+// Returns tiles in the order in which they lie in the picture. By marks, since sorting thousands of them took
+// 2.4% of a small frame's processor time.
 std::vector<layout::u32> in_rows(std::span<const layout::u32> tiles, const layout::Frame& frame) {
   std::vector<std::uint8_t> is_there(frame.n_tiles);
   for (const layout::u32 tile : tiles)
