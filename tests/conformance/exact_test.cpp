@@ -119,5 +119,15 @@ TEST(ExactOfATorus, ItIsMetAgainAcrossItsHole) {
   EXPECT_TRUE(meets_again(within, torus, 1e-3, {-1, 0, 0}));
 }
 
+// From inside it may come out where it is nearer to the surface than rounding, though it passes below.
+TEST(ExactOfATorus, ItIsMetAgainWhereItIsTouchedFromWithin) {
+  const scene::TorusGeometry torus{{0, 0, 0}, {0, 0, 1}, 1, 0.25f, 0};
+  for (const double below : {1e-6, 1e-3}) {
+    const primitives::Line touching{{0.75 + below, -0.3, 0}, {0, 1, 0}};
+    EXPECT_EQ(meets_again(touching, torus, 0.3, {1, 0, 0}), below > 1e-5) << below;
+    EXPECT_TRUE(meets_again(touching, torus, 1e-3, {1, 0, 0})) << below;
+  }
+}
+
 }  // namespace
 }  // namespace kdray::test

@@ -302,20 +302,21 @@ std::optional<double> sure_target(const Line& line, const TorusGeometry& t, doub
 }
 
 // A ray that has left the torus may come back on its way down, or once it comes as near as rounding reaches
-// behind a hill.
+// behind a hill. One that has gone into it may come out where a hill is as near as that.
 bool meets_again(const Line& line, const TorusGeometry& t, double at, const dvec3& side) {
   const Along along(line, t);
   const double minor = t.minor_radius, hill = along.hill();
+  const double reach = 0x1p-17 * (t.major_radius + minor + glm::length(line.origin)), deep = minor - reach;
   const bool outside = glm::dot(side, outward(line.origin, t)) > 0;
   if (outside != (along.height(0) > minor)) return true;
   if (outside) {
     if (along.slope(0) < 0) return false;
-    const double clear = minor + 0x1p-17 * (t.major_radius + minor + glm::length(line.origin));
+    const double clear = minor + reach;
     if (!(hill > 0 && along.height(along.right()) < clear)) return true;
     return at < 0.5 * along.crossing(hill, along.right(), -1, clear);
   }
-  const bool over_hill = hill > 0 && along.height(hill) > minor;
-  const double exit = over_hill ? along.crossing(std::max(0.0, along.left()), hill, 1, minor)
+  const bool over_hill = hill > 0 && along.height(hill) > deep;
+  const double exit = over_hill ? along.crossing(std::max(0.0, along.left()), hill, 1, deep)
                                 : along.crossing(std::max(0.0, along.right()), along.hi(), 1, minor);
   return at < 0.5 * exit;
 }
