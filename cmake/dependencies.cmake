@@ -17,7 +17,7 @@ pkg_check_modules(hwy REQUIRED IMPORTED_TARGET libhwy)  # libhwy-dev
 find_package(assimp QUIET)             # libassimp-dev, optional: mesh formats without a reader of our own
 # Optional: libboost-dev (Beast and Asio, headers alone) with libturbojpeg0-dev for `kdray view`, which says what is missing;
 # libturbojpeg0-dev alone for JPEG pictures on surfaces.
-find_package(Boost 1.74 QUIET)
+find_package(Boost 1.74 CONFIG QUIET)
 pkg_check_modules(turbojpeg QUIET IMPORTED_TARGET libturbojpeg)
 if(Boost_FOUND AND turbojpeg_FOUND)
   set(KDRAY_CAN_VIEW ON)
@@ -25,7 +25,7 @@ else()
   set(KDRAY_CAN_VIEW OFF)
 endif()
 # Optional: what glTF files may be packed with (host/scene/import/load.cpp tells users which of them are there).
-pkg_check_modules(draco QUIET IMPORTED_TARGET draco)   # libdraco-dev
+find_package(draco CONFIG QUIET)                       # libdraco-dev; Debian 13's pkg-config file is broken
 find_package(meshoptimizer CONFIG QUIET)               # libmeshoptimizer-dev
 pkg_check_modules(webp QUIET IMPORTED_TARGET libwebp)  # libwebp-dev
 if(KDRAY_TESTS)

@@ -90,7 +90,8 @@ device::Verdicts verdicts_of(const DeviceOptions& options) {
 
 std::vector<std::string> leave_out_drivers(const DeviceOptions& o) {
   std::vector<std::string> reasons;
-  for (const trial::DriverVerdict& d : trial::mind_drivers({verdicts_of(o), o.device, o.building}))
+  const trial::ListingOptions listing{verdicts_of(o), o.device, o.building};
+  for (const trial::DriverVerdict& d : trial::mind_drivers(listing))
     if (d.left_out) reasons.push_back(d.in_words());
   return reasons;
 }

@@ -383,7 +383,8 @@ TEST_P(MadeInstances, ThatMoveAreAsIfTheyWereBuilt) {
     scene.made.update_transforms(scene.boxes, numbers(places));
     const CommitReport report = scene.made.commit(options());
     EXPECT_TRUE(report.refitted) << step;
-    const prepare::Prepared& fast = scene.made.prepared().prepared();
+    const auto prepared = scene.made.prepared();
+    const prepare::Prepared& fast = prepared.prepared();
     const prepare::Prepared built = prepare::prepare(scene.made.model(), options().tree, fast.geometry.space);
     EXPECT_TRUE(same_bytes(fast.wide.nodes, built.wide.nodes)) << step;
     EXPECT_TRUE(same_bytes(fast.flat.instances, built.flat.instances)) << step;

@@ -343,7 +343,12 @@ TEST(MeshoptGltf, FiltersAreApplied) {
   }
   std::string octahedral(8 * sheet.size(), '\0'), exponential(12 * sheet.size(), '\0');
   meshopt_encodeFilterOct(octahedral.data(), sheet.size(), 8, 16, vectors.data());
+#if MESHOPTIMIZER_VERSION >= 200
+  meshopt_encodeFilterExp(exponential.data(), sheet.size(), 12, 20, sheet.positions.data(),
+                          meshopt_EncodeExpSharedVector);
+#else
   meshopt_encodeFilterExp(exponential.data(), sheet.size(), 12, 20, sheet.positions.data());
+#endif
   GltfSample sample = plain(sheet);
   const int view = sample.view(octahedral, 8);
   auto& accessor = sample.json["accessors"][1];

@@ -135,8 +135,9 @@ class Schema : public ::testing::Test {
 TEST_F(Schema, ListsTheKeysOfTheReader) {
   std::set<std::string> names;
   for (const JsonKeys& object : json_keys::kAll) {
-    names.insert(std::string(object.name));
-    const json& rule = definition(root_, std::string(object.name));
+    const std::string name(object.name);
+    names.insert(name);
+    const json& rule = definition(root_, name);
     EXPECT_EQ(keys_of(rule.at("properties")), (std::set<std::string>(object.keys.begin(), object.keys.end())))
         << object.name;
     EXPECT_EQ(rule.at("additionalProperties"), false) << object.name;

@@ -12,7 +12,7 @@ if(turbojpeg_FOUND)
 endif()
 # What packs the samples that are to be unpacked.
 if(draco_FOUND)
-  target_link_libraries(scene_mesh_test PRIVATE PkgConfig::draco)
+  target_link_libraries(scene_mesh_test PRIVATE draco::draco)
   target_compile_definitions(scene_mesh_test PRIVATE KDRAY_WITH_DRACO=1)
 endif()
 if(meshoptimizer_FOUND)

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# What    The Python package's wheels in a bare Debian root that has no driver and no compiler: wheel_check.sh FOLDER, which
-#         holds kdray's and kdray_pocl's (scripts/wheel). They are installed, used, and uninstalled; the first hit and the first
-#         picture are timed.
+# What    The Python package's wheels in a bare Debian root that has no driver and no compiler: wheel_check.sh FOLDER RELEASE,
+#         the folder with kdray's and kdray_pocl's (scripts/wheel). They are installed, used, and uninstalled; the first hit and
+#         the first picture are timed.
 # Shape   mmdebstrap makes the root from the sources that this machine's apt has; what the wheel needs is downloaded before,
 #         so that the root needs no network.
 # Errors  Status 1 at the first step that fails; 77 (skipped) where a root can't be made.
 set -euo pipefail
-wheels=$(realpath "$1")
+wheels=$(realpath "$1") suite=${2:-bookworm}
 ls "$wheels"/kdray-*.whl "$wheels"/kdray_pocl-*.whl >/dev/null 2>&1 ||
   { echo "the wheels are not in $1: run scripts/wheel and scripts/wheel --pocl first"; exit 1; }
 if [ "$(id -u)" -ne 0 ] || ! command -v mmdebstrap >/dev/null; then
@@ -27,7 +27,7 @@ step() { printf '\n== %s\n' "$*"; }
 in_root() { chroot "$root" env -i PATH=/venv/bin:/usr/bin:/bin HOME=/home LANG=C.UTF-8 "$@"; }
 
 step "a bare root, with Python alone"
-mmdebstrap -q --variant=apt --include=python3-venv bookworm "$root"
+mmdebstrap -q --variant=apt --include=python3-venv "$suite" "$root"
 for place in proc dev sys; do mount --rbind --make-rslave "/$place" "$root/$place"; done
 mkdir -p "$root/wheels" "$root/home"
 python=$(in_root python3 -c 'import sys; print("%d.%d" % sys.version_info[:2])')

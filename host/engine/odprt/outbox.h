@@ -96,13 +96,17 @@ class RayPile {
   // The last n, ray by ray; drop() takes them away, put_all() adds such.
   std::span<const float> last(std::size_t n) const { return std::span(words_).last(n * n_fields_); }
   void drop(std::size_t n) { words_.resize(words_.size() - n * n_fields_); }
-  void put_all(std::span<const float> rays) { words_.insert(words_.end(), rays.begin(), rays.end()); }
+  void put_all(std::span<const float> rays) {
+    const std::size_t first = words_.size();
+    words_.resize(first + rays.size());
+    std::copy(rays.begin(), rays.end(), words_.begin() + static_cast<std::ptrdiff_t>(first));
+  }
 
   void take_all(RayPile& other) {
     if (words_.empty()) {
       words_.swap(other.words_);
     } else {
-      words_.insert(words_.end(), other.words_.begin(), other.words_.end());
+      put_all(other.words_);
       other.words_.clear();
     }
   }

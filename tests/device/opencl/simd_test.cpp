@@ -28,7 +28,8 @@ class SimdTest : public test::EachDevice {
  protected:
   const Variable nothing_asked_for_{"KDRAY_SIMD"};
   FoundDevice found_ = choose_device(GetParam());
-  const OpenDevice& opened_ = Context(GetParam(), 1).opened();  // open until the process ends
+  const Context context_{GetParam(), 1};
+  const OpenDevice& opened_ = context_.opened();
 
   bool works(Simd form) const { return why_not(form, found_, opened_).empty(); }
 

@@ -9,6 +9,7 @@
 #include <mpi.h>
 
 #include <climits>
+#include <cstdint>
 #include <cstring>
 #include <string>
 #include <utility>
