@@ -15,7 +15,9 @@ KDRAY_BODY void shade_ray(Shading* c, const SurfaceArrays* arrays, const Texturi
 
 __kernel void shade(KDRAY_PARAMETERS(KDRAY_SHADE_ARGUMENTS)) {
   __local Tally of_group;
+#if KDRAY_HAS_REFLECT || KDRAY_HAS_TRANSMIT  // PoCL 6 ends with a failed assertion where nothing uses it
   __local u32 spawned[2];
+#endif
   const u32 i = (u32)get_global_id(0);
   const SurfaceArrays arrays = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_SURFACE_ARRAYS);
   const TexturingArrays texturing = KDRAY_MEMBERS_FROM_PARAMETERS(KDRAY_TEXTURING_ARRAYS);
@@ -29,8 +31,6 @@ __kernel void shade(KDRAY_PARAMETERS(KDRAY_SHADE_ARGUMENTS)) {
   }
 #if KDRAY_HAS_REFLECT || KDRAY_HAS_TRANSMIT
   put_all_into_pool(&c, spawned);
-#else
-  (void)spawned;
 #endif
   add_tally(io_slices, &c.tally, &of_group);
 }

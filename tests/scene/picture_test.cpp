@@ -54,6 +54,7 @@ std::string png_of(png_uint_32 width, png_uint_32 height, int bits, int color, c
   png_set_IHDR(png, info, width, height, bits, color, interlace, PNG_COMPRESSION_TYPE_DEFAULT,
                PNG_FILTER_TYPE_DEFAULT);
   if (!palette.empty()) png_set_PLTE(png, info, palette.data(), static_cast<int>(palette.size()));
+  png_set_check_for_invalid_index(png, 0);  // pixels may have colours that the palette lacks
   if (!palette_alpha.empty())
     png_set_tRNS(png, info, palette_alpha.data(), static_cast<int>(palette_alpha.size()), nullptr);
   png_write_info(png, info);

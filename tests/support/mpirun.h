@@ -22,6 +22,7 @@ inline std::map<std::string, std::string> mpirun_environment() {
   return {{"OMPI_ALLOW_RUN_AS_ROOT", "1"},
           {"OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1"},
           {"OMPI_MCA_rmaps_base_oversubscribe", "1"},
+          {"PRTE_MCA_rmaps_default_mapping_policy", ":oversubscribe"},  // the same for Open MPI 5
           {"OMPI_MCA_mpi_yield_when_idle", "1"},
           {"OMPI_MCA_plm_rsh_agent", ""},
           {"ASAN_OPTIONS", "detect_leaks=0"},  // MPI leaves some behind
@@ -30,7 +31,7 @@ inline std::map<std::string, std::string> mpirun_environment() {
 
 inline std::vector<std::string> mpirun_arguments(int ranks, const std::string& program,
                                                  const std::vector<std::string>& arguments) {
-  std::vector<std::string> all = {"--quiet", "--bind-to", "none", "-n", std::to_string(ranks), program};
+  std::vector<std::string> all = {"--bind-to", "none", "-n", std::to_string(ranks), program};
   all.insert(all.end(), arguments.begin(), arguments.end());
   return all;
 }

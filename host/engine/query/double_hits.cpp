@@ -23,6 +23,10 @@ using V = hn::Vec<D>;
 // Source: Dekker 1971; Joldes, Muller, Popescu 2017.
 struct Pairs {
   V high, low;
+
+  // g++ for ARM gives constructors of its own making no instruction set.
+  HWY_ATTR Pairs() {}
+  HWY_ATTR Pairs(V h, V l) : high(h), low(l) {}
 };
 
 HWY_ATTR inline Pairs exact_sum(V a, V b) {
