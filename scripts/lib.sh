@@ -73,11 +73,18 @@ try_to_install() {
   if [ "$(id -u)" -eq 0 ] && command -v apt-get >/dev/null; then (install_packages "$@") || true; fi
 }
 
+# Debian's python3 comes without headers, and without what makes virtual environments.
+complete_python() {
+  python3 -c 'import ensurepip, os, sysconfig; os.stat(sysconfig.get_path("include") + "/Python.h")' 2>/dev/null ||
+    try_to_install python3 python3-dev python3-venv
+}
+
 # python_packages WHAT FOLDER LOGS PACKAGE==VERSION...: a virtual environment with packages from PyPI.
 python_packages() {
   local what=$1 folder=$2 logs=$3
   shift 3
   rm -rf "$folder"
+  complete_python
   logged "fetching $what" "$logs/venv.log" python3 -m venv "$folder" &&
     logged "fetching $what" "$logs/pip.log" timeout 300 "$folder/bin/pip" install --no-cache-dir "$@"
 }

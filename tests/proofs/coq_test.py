@@ -19,7 +19,7 @@ from kernel_source import Broken
 FOLDER = pathlib.Path(__file__).parent
 LIBRARY = {"ClassicalDedekindReals", "FunctionalExtensionality", "Classical_Prop"}  # what Coq's reals take for granted
 EQUATION = """Proof.
-intros; change (Float1 1) with 1%R in *; change (Float1 0) with 0%R in *.
+intros; {unfold}change (Float1 1) with 1%R in *; change (Float1 0) with 0%R in *.
 first [ring | field; repeat split; assumption].
 Qed.
 """
@@ -60,12 +60,23 @@ def signs(folder, compiler, kernels):
     return 1 if failed else 0
 
 
+def equation_after(proof):
+    """The terms have names that `ring` sees through where they are notations, but not as definitions (Gappa 1.6)."""
+    names = re.findall(r"^Definition (\w+) :=", proof, flags=re.M)
+    return EQUATION.format(unfold=f"unfold {', '.join(reversed(names))} in *; " if names else "")
+
+
 def proof_of(bound, name, folder, compiler, kernels):
     """Returns whether Coq accepts the proof that Gappa finds, and why not."""
     script = bound.gappa(compiler, [kernels])
     proof = subprocess.run([*GAPPA, "-Bcoq"], input=script, capture_output=True, text=True, timeout=600).stdout
     # Gappa takes its hints as given; they are equations, which Coq proves.
-    proof, hints = re.subn(r"^Hypothesis (a\d+ : [^.]*(?:\.\d[^.]*)*)\.$", rf"Lemma \1.\n{EQUATION}", proof, flags=re.M)
+    proof, hints = re.subn(
+        r"^Hypothesis (a\d+ : [^.]*(?:\.\d[^.]*)*)\.$",
+        lambda hint: f"Lemma {hint[1]}.\n{equation_after(hint.string[: hint.start()])}",
+        proof,
+        flags=re.M,
+    )
     if re.search(r"\b(Hypothesis|Axiom|Parameter|Admitted)\b", proof) or "-> False." not in proof:
         return False, "something is left that Coq doesn't prove"
     (folder / f"{name}.v").write_text(f"Require Import Reals.\n{proof}")

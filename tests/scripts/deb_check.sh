@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# What    The packages in a bare Debian root: deb_check.sh FOLDER, which holds them (scripts/deb). They are installed, used by
-#         debian/tests, upgraded to a version that differs in its number alone, and removed; nothing of theirs may stay.
+# What    The packages in a bare Debian root: deb_check.sh FOLDER RELEASE; the folder holds them (scripts/deb). They are installed,
+#         used by debian/tests, upgraded to a version that differs in its number alone, and removed; nothing of theirs may stay.
 # Shape   mmdebstrap makes the root from the sources that this machine's apt has, in a temporary folder.
 # Errors  Status 1 at the first step that fails; 77 (skipped) where a root can't be made.
 set -euo pipefail
-packages=$(realpath "$1")
+packages=$(realpath "$1") suite=${2:-bookworm}
 ls "$packages"/*.deb >/dev/null 2>&1 || { echo "there are no packages in $1: run scripts/deb first"; exit 1; }
 if [ "$(id -u)" -ne 0 ] || ! command -v mmdebstrap >/dev/null; then
   echo "skipped: a bare root takes mmdebstrap, and root"
@@ -48,7 +48,7 @@ run_tests() {
 }
 
 step "a bare root"
-mmdebstrap -q --variant=apt bookworm "$root"
+mmdebstrap -q --variant=apt "$suite" "$root"
 cp -R "$(dirname "$0")/../../debian/tests" "$root/tests"
 mkdir "$root/packages"
 find "$packages" -name '*.deb' ! -name '*-dbgsym_*' -exec cp {} "$root/packages" \;
