@@ -84,7 +84,7 @@ python_packages() {
   local what=$1 folder=$2 logs=$3
   shift 3
   rm -rf "$folder"
-  complete_python
+  python3 -c 'import ensurepip' 2>/dev/null || complete_python
   logged "fetching $what" "$logs/venv.log" python3 -m venv "$folder" &&
     logged "fetching $what" "$logs/pip.log" timeout 300 "$folder/bin/pip" install --no-cache-dir "$@"
 }

@@ -43,7 +43,7 @@ copy_pocl() {
   local library gold libraries
   library=$(ldconfig -p | awk '/libpocl\.so\.2 / && !found++ {print $NF}')
   gold=$(command -v ld.gold) || gold=
-  if [ -z "$library" ] || [ -z "$gold" ]; then say "there is no PoCL, or no ld.gold (pocl-opencl-icd, binutils)"; exit 1; fi
+  if [ -z "$library" ] || [ -z "$gold" ]; then say "there is no PoCL, or no ld.gold (pocl-opencl-icd, binutils, from Debian 13 on binutils-gold)"; exit 1; fi
   mapfile -t libraries < <(echo "$library"; libraries_of "$library" "$gold")
   copy_libraries "$folder/lib/pocl" "${libraries[@]}"
   copy_libraries "$folder/lib/pocl/pocl" "$(dirname "$library")"/pocl/libpocl-devices-*.so

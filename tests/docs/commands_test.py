@@ -27,6 +27,7 @@ PATIENCE_WITH_BENCHES = 7200  # docs/accuracy.md's takes half an hour
 # As tests/support/mpirun.h has them: containers, root, and ranks that share cores.
 MPIRUN = {
     "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
+    "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
     "OMPI_MCA_mpi_yield_when_idle": "1", "OMPI_MCA_plm_rsh_agent": "", "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
 }  # fmt: skip
 TETRAHEDRON = """ply

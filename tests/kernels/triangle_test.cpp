@@ -1,5 +1,5 @@
-// The triangle test: nothing escapes from closed meshes at edges and vertices, and a ray never hits the plane
-// that it starts in. (The full stress suites are elsewhere; these are the method's own tests.)
+// The triangle test: nothing escapes from closed meshes at edges and vertices, and a ray never hits what it
+// starts on. (The full stress suites are elsewhere; these are the method's own tests.)
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -370,6 +370,37 @@ TEST_P(TriangleTest, ATriangleAheadIsMetByARayThatBeginsInItsPlane) {
                    make_case({-0x1.82f86ap+2f, -0x1.15cd44p+5f, 0x1.1e9962p+5f},
                              {0x1.bf5278p-6f, 0x1.62d8c8p-1f, -0x1.70d35cp-1f}, other),
                    45.2009125f);
+}
+
+// Where products cancel, rounding alone puts corners ahead: of a ray across a plane, and of one that begins
+// on an edge and runs across it.
+TEST_P(TriangleTest, ARayAcrossThePlaneItStartsFromDoesNotHitIt) {
+  const unsigned seed = 11;
+  SCOPED_TRACE(seed);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> unit(0, 1);
+  const float half = std::sqrt(0.5f);
+  const std::array<vec3, 3> roof{vec3(-1, -1, 1), vec3(1.5f, -1, -1.5f), vec3(0.2f, 1, -0.2f)};
+  const std::array<vec3, 3> floor{vec3(0), vec3(1, 0, 0), vec3(1, 1, 0)};
+  std::vector<Case> in;
+  for (int i = 0; i < 20000; ++i) {
+    const float s = 0.5f * unit(random), t = 0.5f * unit(random);
+    vec3 origin = roof[0] + s * (roof[1] - roof[0]) + t * (roof[2] - roof[0]);
+    origin.z = -origin.x;
+    in.push_back(make_case(origin, {half, 0, half}, roof));
+    const float along = unit(random), aside = unit(random) - 0.5f;
+    in.push_back(make_case({along, along, 0}, {aside, -aside, 0.3f + unit(random)}, floor));
+  }
+  for (const int lanes : {1, 4, 8, 16}) {
+    SCOPED_TRACE(lanes);
+    const auto out = test::run_kernel<FoundInLanes>(GetParam(), kLanesSource, in, lanes_options(lanes));
+    int met = 0;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      met += out[i].met;
+      ASSERT_FALSE(out[i].met && out[i].settled_t > 0) << i << " t = " << out[i].settled_t;
+    }
+    EXPECT_GT(met, 10000);
+  }
 }
 
 KDRAY_FOR_EACH_DEVICE(TriangleTest);

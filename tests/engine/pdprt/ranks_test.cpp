@@ -112,18 +112,27 @@ TEST_P(RanksTest, BandsAndAdaptiveSampling) {
   EXPECT_GT(reference.counters.primary, std::uint64_t{61} * 43);
 }
 
+// A queue that comes when all is done fails at nothing: then it is tried again.
+constexpr int kTries = 50;
+
 TEST_P(RanksTest, AQueueThatFailsCostsNothing) {
-  device::FaultInjector second("1@2");
-  const Result result = render({1, 2, 1}, long_task(), {nullptr, &second});
+  Result result;
+  for (int i = 0; i < kTries && (i == 0 || result.queues[2].failure.empty()); ++i) {
+    device::FaultInjector second("1@2");
+    result = render({1, 2, 1}, long_task(), {nullptr, &second});
+  }
   EXPECT_EQ(result.rgb, alone(long_task()).rgb);
   EXPECT_NE(result.queues[2].failure, "");
 }
 
 TEST_P(RanksTest, ARankThatFailsEndsAll) {
-  device::FaultInjector second("0@1");
   EXPECT_TRUE(test::fails(
       [&] {
-        render({1, 1, 1}, long_task(), {nullptr, &second});
+        for (int i = 0; i < kTries; ++i) {
+          device::FaultInjector second("0@1");
+          const Result result = render({1, 1, 1}, long_task(), {nullptr, &second});
+          if (result.queues[1].tiles > 0) return;
+        }
       },
       "rank 1: ", ErrorCode::no_device));
   device::FaultInjector first("0@1");
