@@ -1,23 +1,12 @@
 #!/usr/bin/env bash
 # What    The packages in a bare Debian root: deb_check.sh FOLDER RELEASE; the folder holds them (scripts/deb). They are installed,
 #         used by debian/tests, upgraded to a version that differs in its number alone, and removed; nothing of theirs may stay.
-# Shape   mmdebstrap makes the root from the sources that this machine's apt has, in a temporary folder.
 # Errors  Status 1 at the first step that fails; 77 (skipped) where a root can't be made.
 set -euo pipefail
 packages=$(realpath "$1") suite=${2:-bookworm}
 ls "$packages"/*.deb >/dev/null 2>&1 || { echo "there are no packages in $1: run scripts/deb first"; exit 1; }
-if [ "$(id -u)" -ne 0 ] || ! command -v mmdebstrap >/dev/null; then
-  echo "skipped: a bare root takes mmdebstrap, and root"
-  exit 77
-fi
-work=$(mktemp -d)
-root=$work/root
-
-leave() {
-  for place in proc sys dev; do umount -l "$root/$place" 2>/dev/null || true; done
-  rm -rf --one-file-system "$work"
-}
-trap leave EXIT
+# shellcheck source=tests/scripts/bare_root.sh
+source "$(dirname "${BASH_SOURCE[0]}")/bare_root.sh"
 
 step() { printf '\n== %s\n' "$*"; }
 in_root() {
@@ -48,13 +37,11 @@ run_tests() {
 }
 
 step "a bare root"
-mmdebstrap -q --variant=apt "$suite" "$root"
+make_root "$suite"
 cp -R "$(dirname "$0")/../../debian/tests" "$root/tests"
 mkdir "$root/packages"
 find "$packages" -name '*.deb' ! -name '*-dbgsym_*' -exec cp {} "$root/packages" \;
-cp /etc/resolv.conf "$root/etc/"
 in_root apt-get -qq update >"$work/apt.log" 2>&1 || { tail -n 30 "$work/apt.log"; exit 1; }
-for place in proc sys dev; do mount --rbind --make-rslave "/$place" "$root/$place"; done
 in_root find / -xdev -path /proc -prune -o -path '/packages' -prune -o -iname '*kdray*' -print >"$work/before"
 
 step "kdray alone, without a driver"

@@ -9,26 +9,15 @@ set -euo pipefail
 wheels=$(realpath "$1") suite=${2:-bookworm}
 ls "$wheels"/kdray-*.whl "$wheels"/kdray_pocl-*.whl >/dev/null 2>&1 ||
   { echo "the wheels are not in $1: run scripts/wheel and scripts/wheel --pocl first"; exit 1; }
-if [ "$(id -u)" -ne 0 ] || ! command -v mmdebstrap >/dev/null; then
-  echo "skipped: a bare root takes mmdebstrap, and root"
-  exit 77
-fi
 scenes=$(realpath "$(dirname "$0")/../../scenes")
-work=$(mktemp -d)
-root=$work/root
-
-leave() {
-  for place in proc dev sys; do umount -l "$root/$place" 2>/dev/null || true; done
-  rm -rf --one-file-system "$work"
-}
-trap leave EXIT
+# shellcheck source=tests/scripts/bare_root.sh
+source "$(dirname "${BASH_SOURCE[0]}")/bare_root.sh"
 
 step() { printf '\n== %s\n' "$*"; }
 in_root() { chroot "$root" env -i PATH=/venv/bin:/usr/bin:/bin HOME=/home LANG=C.UTF-8 "$@"; }
 
 step "a bare root, with Python alone"
-mmdebstrap -q --variant=apt --include=python3-venv "$suite" "$root"
-for place in proc dev sys; do mount --rbind --make-rslave "/$place" "$root/$place"; done
+make_root "$suite" --include=python3-venv
 mkdir -p "$root/wheels" "$root/home"
 python=$(in_root python3 -c 'import sys; print("%d.%d" % sys.version_info[:2])')
 echo "Python $python"
