@@ -1,5 +1,4 @@
 // What    kdray as a side of `bench queries` (queries/bench.h).
-#include <algorithm>
 #include <optional>
 
 #include "bench/queries/bench.h"
@@ -24,11 +23,10 @@ struct DoubleSet {
       : of(&set),
         origins(set.origins.begin(), set.origins.end()),
         directions(set.directions.begin(), set.directions.end()),
-        points(set.points.begin(), set.points.end()),
-        t(set.size()) {}
+        points(set.points.begin(), set.points.end()) {}
 
   const QuerySet* of;
-  std::vector<double> origins, directions, points, t;
+  std::vector<double> origins, directions, points;
 };
 
 // Asks in floats, or in doubles.
@@ -40,8 +38,8 @@ class KdrayAsker : public Asker {
   void ask(Question question, const QuerySet& set, std::size_t first, std::size_t n, Answers& a) override {
     if (!in_double_) return ask(question, set, first, n, a, a.t);
     if (!doubles_ || doubles_->of != &set) doubles_.emplace(set);
-    ask(question, *doubles_, first, n, a, doubles_->t);
-    if (!a.t.empty()) std::copy_n(doubles_->t.begin() + first, n, a.t.begin() + first);
+    a.exact_t.resize(a.t.size());
+    ask(question, *doubles_, first, n, a, a.exact_t);
   }
 
  private:

@@ -31,6 +31,7 @@ inline Question question_of(std::string_view name) {
 struct Answers {
   // Of `closest`; of `points` the distance is `t`.
   std::vector<float> t, u, v;
+  std::vector<double> exact_t;  // in place of t, from a side that answers in doubles
   std::vector<std::uint32_t> geometry, primitive;
   std::vector<float> point;       // of `points`
   std::vector<std::uint8_t> hit;  // of `any`, `inside`
@@ -46,6 +47,8 @@ struct Answers {
     if (question == Question::any || question == Question::inside) hit.resize(n);
     if (question == Question::count) count.resize(n);
   }
+
+  double t_of(std::size_t i) const { return exact_t.empty() ? double{t[i]} : exact_t[i]; }
 };
 
 class Asker {

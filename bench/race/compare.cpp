@@ -51,7 +51,7 @@ bool answers_differ(Question question, const Answers& a, const Answers& b, std::
     case Question::count:
       return a.count[i] != b.count[i];
     default:
-      return far_apart(a.t[i], b.t[i], width);
+      return far_apart(a.t_of(i), b.t_of(i), width);
   }
 }
 

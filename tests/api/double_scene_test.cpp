@@ -234,6 +234,44 @@ TEST_P(DoubleScenes, GrazingRaysHitWhatRationalsSay) {
   holds(mesh, list);
 }
 
+// Of two that lie one behind the other, by about as much as floats are off, seen face on to nearly edge-on,
+// far from the scene's centre.
+TEST_P(DoubleScenes, OfTwoSlantingFacesTheNearerIsHit) {
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed + 10);
+  std::uniform_real_distribution<double> share(-1, 1);
+  DoubleMesh mesh{{{-64, -64, -64}, {64, 64, 64}, {64, 64, 63}}, {0, 1, 2}};
+  RayList list;
+  for (int pair = 0; pair < 80; ++pair) {
+    Point at, direction, across, along, corners[3];
+    for (Point* p : {&at, &direction, &across, &along})
+      for (double& c : *p) c = share(random);
+    for (double& c : at) c += 50;
+    const double steep = std::ldexp(1, pair % 7), apart = std::ldexp(1, -12 - pair % 11);
+    for (std::size_t k = 0; k < 3; ++k) {
+      corners[0][k] = at[k];
+      corners[1][k] = at[k] + 0.1 * (across[k] + steep * direction[k]);
+      corners[2][k] = at[k] + 0.1 * (along[k] - steep * direction[k]);
+    }
+    for (const double behind : {pair % 2 ? apart : 0.0, pair % 2 ? 0.0 : apart})
+      for (const Point& corner : corners) {
+        mesh.triangles.push_back(static_cast<std::uint32_t>(mesh.vertices.size()));
+        Point& moved = mesh.vertices.emplace_back(corner);
+        for (std::size_t k = 0; k < 3; ++k) moved[k] += behind * direction[k];
+      }
+    for (int i = 0; i < 40; ++i) {
+      const double u = std::abs(share(random)), v = std::abs(share(random)) * (1 - u),
+                   far = std::ldexp(1, i % 6 - 3);
+      Point origin;
+      for (std::size_t k = 0; k < 3; ++k)
+        origin[k] = at[k] + u * (corners[1][k] - at[k]) + v * (corners[2][k] - at[k]) - far * direction[k];
+      list.origins.push_back(origin);
+      list.directions.push_back(direction);
+    }
+  }
+  holds(mesh, list);
+}
+
 // Through vertices from so far off that a coordinate's last place is more than the scene.
 TEST_P(DoubleScenes, RaysFromFarAwayHitWhatRationalsSay) {
   SCOPED_TRACE(kSeed);

@@ -74,16 +74,13 @@ class HitBlock {
   bool is_hit(std::size_t i) const { return t_[i] != HUGE_VAL; }
 
   void write_places(const QueryContext& context, const HitsOut& out, std::size_t first) {
-    const prepare::Prepared& scene = context.scene();
-    // An index is a number already where the scene has none of its own.
-    const bool has_numbers = (scene.features & KDRAY_FEATURE_NUMBERS) != 0;
+    const Numbers numbers(context.scene());
+    for (std::size_t i = 0; i < n_; ++i)
+      if (is_hit(i)) numbers.fetch(ref_[i]);
     std::array<GeometryTable::Place, kMost> places;
-    for (std::size_t i = 0; i < n_; ++i) {
-      places[i] = {kNoGeometry, kNoPrimitive};
-      if (is_hit(i))
-        places[i] =
-            context.table.of(has_numbers ? number_of(scene.flat, ref_[i]) : ref_[i] & KDRAY_REF_INDEX_MASK);
-    }
+    for (std::size_t i = 0; i < n_; ++i)
+      places[i] =
+          is_hit(i) ? context.table.of(numbers.of(ref_[i])) : GeometryTable::Place{kNoGeometry, kNoPrimitive};
     for (std::size_t i = 0; i < n_; ++i)
       if (places[i].is_mirrored) std::swap(u_[i], v_[i]);
     fill(out.geometry, first, n_, [&](std::size_t i) { return places[i].geometry; });

@@ -83,11 +83,15 @@ class Answer {
     begin(found.more, [&](std::size_t i) { return found.of(i).size(); });
     const std::size_t first = hits_.more.size() - found.more.size();
     const flatten::FlatScene& flat = context_->scene().flat;
+    const Numbers numbers(context_->scene());
+    constexpr std::size_t kAhead = 8;  // rays
     for_each_index(found.more.size(), [&](std::size_t i) {
+      if (i + kAhead < found.more.size())
+        for (const ExactHit& hit : found.of(i + kAhead)) numbers.fetch(hit.ref);
       std::size_t at = hits_.splits[first + i];
       for (const ExactHit& hit : found.of(i)) {
         const bool placed = hit.instance != kNoInstance;
-        put(at++, hit.t, hit.u, hit.v, number_of(flat, hit.ref),
+        put(at++, hit.t, hit.u, hit.v, numbers.of(hit.ref),
             placed ? flat.instances[hit.instance].number : kNoInstance);
       }
     });

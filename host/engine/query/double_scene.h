@@ -77,11 +77,14 @@ class DoubleScene {
   static std::uint32_t ref_of(std::uint32_t triangle) {
     return std::uint32_t{KDRAY_KIND_TRIANGLE} << KDRAY_REF_KIND_SHIFT | triangle;
   }
-  void fetch_ahead(std::size_t i, std::size_t n, const auto& triangle) const {
-    constexpr std::size_t kAhead = CrossedTriangles::kLanes;
-    if (i + 2 * kAhead < n) __builtin_prefetch(&doubles_->corners[triangle(i + 2 * kAhead)]);
-    if (i + kAhead >= n) return;
-    for (const std::uint32_t vertex : doubles_->corners[triangle(i + kAhead)])
+  // Fetches the corners' numbers of triangle i, or its vertices, where there is one. (Inlined: g++ takes a
+  // function that does nothing else for one without effect, and leaves out calls of it.)
+  [[gnu::always_inline]] void fetch_corners(std::size_t i, std::size_t n, const auto& triangle) const {
+    if (i < n) __builtin_prefetch(&doubles_->corners[triangle(i)]);
+  }
+  [[gnu::always_inline]] void fetch_vertices(std::size_t i, std::size_t n, const auto& triangle) const {
+    if (i >= n) return;
+    for (const std::uint32_t vertex : doubles_->corners[triangle(i)])
       __builtin_prefetch(&doubles_->vertices[vertex]);
   }
 
@@ -99,11 +102,14 @@ void DoubleScene::tell(std::size_t n, const LineOf& line, const TriangleOf& tria
   std::array<DoubleLine, kLanes> lines;
   CrossedTriangles crossed;
   ToldHits hits;
+  for (std::size_t i = 0; i < 2 * kLanes; ++i) fetch_corners(i, n, triangle);
+  for (std::size_t i = 0; i < kLanes; ++i) fetch_vertices(i, n, triangle);
   for (std::size_t first = 0; first < n; first += kLanes) {
     const std::size_t here = std::min(kLanes, n - first);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const std::size_t i = first + std::min(lane, here - 1);
-      fetch_ahead(i, n, triangle);
+      fetch_corners(i + 2 * kLanes, n, triangle);
+      fetch_vertices(i + kLanes, n, triangle);
       lines[lane] = line(i);
       crossed.put(lane, lines[lane], doubles_->at(triangle(i)));
     }

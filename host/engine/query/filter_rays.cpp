@@ -22,9 +22,9 @@ namespace kdray::query {
 
 constexpr std::size_t kRaysAtOnce = 8;
 
-// The caller's rays, lane by lane.
+// The caller's rays, one after the other: where they are in the caller's memory, or copies.
 struct FilterRows {
-  double origin[3][kRaysAtOnce], direction[3][kRaysAtOnce], t_min[kRaysAtOnce], t_max[kRaysAtOnce];
+  const double *origin, *direction, *t_min, *t_max;
 };
 
 struct FilterSpace {
@@ -67,23 +67,27 @@ HWY_ATTR inline void filter_lanes(const FilterRows& rays, const FilterSpace& spa
   constexpr double kFarther = 0x1p13, kFarthest = 0x1p30, kLeastOutward = 0x1p-22;
   const D d;
   const auto all = [&](double x) HWY_ATTR { return hn::Set(d, x); };
-  V local[3], rest[3], direction[3];
+  V origin[3], local[3], rest[3], direction[3];
+  hn::LoadInterleaved3(d, rays.origin + 3 * lane, origin[0], origin[1], origin[2]);
+  hn::LoadInterleaved3(d, rays.direction + 3 * lane, direction[0], direction[1], direction[2]);
   for (int k = 0; k < 3; ++k) {
-    const V origin = hn::LoadU(d, rays.origin[k] + lane), center = all(space.center[k]);
-    const V from_center = hn::Sub(origin, center), back = hn::Sub(origin, from_center);
-    const V lost = hn::Sub(hn::Sub(origin, hn::Add(from_center, back)), hn::Sub(center, back));
+    const V center = all(space.center[k]);
+    const V from_center = hn::Sub(origin[k], center), back = hn::Sub(origin[k], from_center);
+    const V lost = hn::Sub(hn::Sub(origin[k], hn::Add(from_center, back)), hn::Sub(center, back));
     local[k] = hn::Mul(from_center, all(space.scale));
     rest[k] = hn::Mul(lost, all(space.scale));
-    direction[k] = hn::LoadU(d, rays.direction[k] + lane);
   }
   const V way = sum_of_sizes(local), length = sum_of_sizes(direction);
   const auto is_far = hn::Gt(way, all(kFarther));
   // Before it enters the ball about the centre that the scene lies in, whose reach is below 2^11 along each
   // axis: frusta want t from 0 on.
-  const V length2 = dot(direction, direction);
-  const V nearest = hn::Neg(hn::Div(dot(local, direction), length2));
-  const V before = hn::Div(all(0x1.cp11), hn::Sqrt(length2));
-  const V start = hn::IfThenElseZero(is_far, hn::Sub(nearest, before));
+  V start = hn::Zero(d);
+  if (!hn::AllFalse(d, is_far)) {
+    const V length2 = dot(direction, direction);
+    const V nearest = hn::Neg(hn::Div(dot(local, direction), length2));
+    const V before = hn::Div(all(0x1.cp11), hn::Sqrt(length2));
+    start = hn::IfThenElseZero(is_far, hn::Sub(nearest, before));
+  }
   for (int k = 0; k < 3; ++k) {
     store_floats(hn::Add(hn::MulAdd(start, direction[k], local[k]), rest[k]), out.fields[k] + lane);
     store_floats(direction[k], out.fields[4 + k] + lane);
@@ -132,12 +136,46 @@ layout::QueryRay filter_ray(const LocalFrame& frame, const RayArrays& rays, std:
   return out;
 }
 
-void put(FilterRows& rows, std::size_t lane, const RayArrays& rays, std::size_t i) {
-  const dvec3 origin = rays.origin(i), direction = rays.direction(i);
-  for (int k = 0; k < 3; ++k) rows.origin[k][lane] = origin[k], rows.direction[k][lane] = direction[k];
-  rows.t_min[lane] = rays.t_min(i);
-  rows.t_max[lane] = rays.t_max(i);
-}
+// kRaysAtOnce rows of the caller's, one after the other in memory: copied only where they aren't such there.
+class EightRows {
+ public:
+  explicit EightRows(const RayArrays& rays)
+      : rays_(rays),
+        are_origins_dense_(is_dense(rays.rays().origins, rays.size())),
+        are_directions_dense_(is_dense(rays.rays().directions, rays.size())) {
+    std::fill_n(t_min_, kRaysAtOnce, 0);
+    std::fill_n(t_max_, kRaysAtOnce, std::numeric_limits<double>::infinity());
+  }
+
+  // Rays from i on; behind the last of n the last one again.
+  FilterRows at(std::size_t i, std::size_t n) {
+    const bool all = n == kRaysAtOnce;
+    const Rays& rays = rays_.rays();
+    for (std::size_t lane = 0; lane < kRaysAtOnce; ++lane) {
+      const std::size_t ray = i + std::min(lane, n - 1);
+      if (!all || !are_origins_dense_) put(origins_ + 3 * lane, rays_.origin(ray));
+      if (!all || !are_directions_dense_) put(directions_ + 3 * lane, rays_.direction(ray));
+      if (!rays.t_min.empty()) t_min_[lane] = rays_.t_min(ray);
+      if (!rays.t_max.empty()) t_max_[lane] = rays_.t_max(ray);
+    }
+    return {all && are_origins_dense_ ? rays.origins.first_of<const double>() + 3 * i : origins_,
+            all && are_directions_dense_ ? rays.directions.first_of<const double>() + 3 * i : directions_,
+            t_min_, t_max_};
+  }
+
+ private:
+  static bool is_dense(const Points& points, std::size_t n) {
+    return points.size() == n && points.first_of<const double>() != nullptr &&
+           points.stride() == 3 * sizeof(double);
+  }
+  static void put(double* row, const dvec3& v) {
+    for (int k = 0; k < 3; ++k) row[k] = v[k];
+  }
+
+  const RayArrays& rays_;
+  bool are_origins_dense_, are_directions_dense_;
+  double origins_[3 * kRaysAtOnce], directions_[3 * kRaysAtOnce], t_min_[kRaysAtOnce], t_max_[kRaysAtOnce];
+};
 
 layout::QueryRay ray_of(const FilteredRows& rows, std::size_t lane) {
   const auto& f = rows.fields;
@@ -153,13 +191,11 @@ bool fill_filter_rays(const RayArrays& rays, const LocalFrame& frame, std::size_
       {s.center.x, s.center.y, s.center.z}, s.scale, frame.ordinary_unit() != 0 ? 1 / frame.unit() : NAN};
   std::atomic<bool> valid{true};
   for_each_grain(n, [&](std::size_t begin, std::size_t end) {
-    FilterRows rows;
+    EightRows rows(rays);
     FilteredRows filtered;
     for (std::size_t at = begin; at < end; at += kRaysAtOnce) {
       const std::size_t n_lanes = std::min(kRaysAtOnce, end - at);
-      for (std::size_t lane = 0; lane < kRaysAtOnce; ++lane)
-        put(rows, lane, rays, first + at + std::min(lane, n_lanes - 1));
-      HWY_DYNAMIC_DISPATCH(FilterAll)(rows, space, filtered);
+      HWY_DYNAMIC_DISPATCH(FilterAll)(rows.at(first + at, n_lanes), space, filtered);
       for (std::size_t lane = 0; lane < n_lanes; ++lane) {
         const std::size_t i = first + at + lane;
         if (filtered.is_ordinary[lane] != 0) {

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "accel/flatten/flatten.h"
+#include "accel/prepare/prepared.h"
 #include "base/vec.h"
 #include "kdray/model.h"
 #include "scene/primitives/shapes.h"
@@ -21,6 +22,28 @@ inline std::uint32_t number_of(const flatten::FlatScene& scene, std::uint32_t re
     return decltype(kind)::of(scene)[ref & KDRAY_REF_INDEX_MASK].number;
   });
 }
+
+// The same of many primitives: without a look where their indices are their numbers already.
+class Numbers {
+ public:
+  explicit Numbers(const prepare::Prepared& scene)
+      : scene_(&scene.flat), are_indices_((scene.features & KDRAY_FEATURE_NUMBERS) == 0) {}
+
+  std::uint32_t of(std::uint32_t ref) const {
+    return are_indices_ ? ref & KDRAY_REF_INDEX_MASK : number_of(*scene_, ref);
+  }
+  // For a call of of(ref) that comes soon. (Inlined: g++ leaves out calls of what does nothing but fetch.)
+  [[gnu::always_inline]] void fetch(std::uint32_t ref) const {
+    if (are_indices_) return;
+    primitives::with_kind(ref >> KDRAY_REF_KIND_SHIFT, [&](auto kind) {
+      __builtin_prefetch(&decltype(kind)::of(*scene_)[ref & KDRAY_REF_INDEX_MASK].number);
+    });
+  }
+
+ private:
+  const flatten::FlatScene* scene_;
+  bool are_indices_;
+};
 
 // Of instances by index, or kNoInstance: their places in the scene's list.
 inline void name_places(const flatten::FlatScene& scene, std::span<std::uint32_t> instances) {
