@@ -121,8 +121,9 @@ class Mover {
   }
 
  private:
-  // Prefetches the triangles of a block that is written soon: leaves follow each other.
-  void prefetch(std::size_t i) const {
+  // Prefetches the triangles of a block that is written soon: leaves follow each other. (Inlined: g++ takes a
+  // function that does nothing else for one without effect, and leaves out calls of it.)
+  [[gnu::always_inline]] void prefetch(std::size_t i) const {
     const std::size_t at = (i * KDRAY_TRIANGLE_ROWS + KDRAY_ROW_TRIANGLE_INDEX) * block_;
     if (at + block_ > from_.triangle_blocks.size()) return;
     for (std::size_t lane = 0; lane < block_; ++lane)
