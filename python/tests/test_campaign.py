@@ -1,5 +1,6 @@
 import json
 import os
+from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from types import SimpleNamespace
@@ -10,7 +11,7 @@ import pytest
 
 import kdray
 from kdray import bench
-from kdray.bench import campaign
+from kdray.bench import campaign, leaving
 from kdray.bench.exact import Exact
 
 N = len(campaign.MESHES) + 1  # kinds of scenes
@@ -182,3 +183,30 @@ def test_the_command_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsy
     stand_in(monkeypatch, interrupted)
     assert bench.main(["--campaign", folder]) == 1
     assert capsys.readouterr().out.startswith("2 units, ")
+
+
+# ---- Rays that begin on the surface
+
+
+def test_they_begin_at_vertices_on_edges_and_within() -> None:
+    mesh = bench.sphere(6)
+    query, begins_at = leaving.leave(mesh, 240, 7)
+    assert query.directions is not None and np.isfinite(query.directions).all()
+    np.testing.assert_array_equal(query.origins[::4], mesh.vertices[begins_at[::4]])
+    assert (begins_at[1::4] == -1).all() and len(set(begins_at[::4].tolist())) > 20
+    scene = kdray.Scene()
+    scene.add_mesh(mesh.vertices, mesh.triangles)
+    assert np.abs(scene.signed_distance(query.origins)).max() < 1e-6
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_answers_of_another_surface_are_wrong(dtype: type[np.floating[Any]]) -> None:
+    mesh = bench.sphere(6)
+    geometry = "float" if dtype == np.float32 else "double"
+    for size, is_wrong in ((1, False), (1 + 1e-3, True)):
+        scene = kdray.Scene(geometry=geometry)
+        scene.add_mesh(mesh.vertices.astype(dtype) * dtype(size), mesh.triangles)
+        found: Counter[str] = Counter()
+        judged = leaving.ask(scene, mesh, 2000, 8, dtype, found)
+        assert bool(sum(found.values())) == is_wrong, found
+        assert judged == 0 if dtype == np.float32 else judged > 6

@@ -403,6 +403,32 @@ TEST_P(TriangleTest, ARayAcrossThePlaneItStartsFromDoesNotHitIt) {
   }
 }
 
+// Pairs of floats alone would put the plane before or behind its own second and third corner.
+TEST_P(TriangleTest, ARayFromACornerDoesNotHitTheTriangle) {
+  const unsigned seed = 12;
+  SCOPED_TRACE(seed);
+  std::mt19937 random(seed);
+  std::normal_distribution<float> any;
+  const auto some = [&] { return vec3(any(random), any(random), any(random)); };
+  std::vector<Case> in;
+  for (int i = 0; i < 30000; ++i) {
+    const std::array<vec3, 3> triangle{some(), some(), some()};
+    in.push_back(make_case(triangle[static_cast<std::size_t>(i % 3)], some(), triangle));
+  }
+  for (const auto& found : test::run_kernel<Found>(GetParam(), kSource, in, "-DZERO_AREA=false"))
+    ASSERT_FALSE(found.hit && found.t > 0) << found.t;
+  for (const int lanes : {1, 4, 8, 16}) {
+    SCOPED_TRACE(lanes);
+    const auto out = test::run_kernel<FoundInLanes>(GetParam(), kLanesSource, in, lanes_options(lanes));
+    int met = 0;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      met += out[i].met;
+      ASSERT_FALSE(out[i].met && out[i].settled_t > 0) << i << " t = " << out[i].settled_t;
+    }
+    EXPECT_GT(met, 10000);
+  }
+}
+
 KDRAY_FOR_EACH_DEVICE(TriangleTest);
 
 }  // namespace

@@ -2,7 +2,8 @@
 
 A unit is a seed, which its scene, scale and rays come from. `kdray verify` traces the scene by every walk. Then rays
 that begin outside are put to it by each form of question, of floats and, for meshes, of doubles: the forms have to
-agree, and counts to be even where surfaces are closed. Of the doubles a sample is held against exact arithmetic.
+agree, and counts to be even where surfaces are closed. Others begin on meshes (`leaving`). Of the doubles a sample is
+held against exact arithmetic.
 
 The ledger has a file for each unit: whoever creates it, empty, takes the unit, and replaces it by a line of JSON when
 that is finished. So any number of processes share a folder, and a run goes on where another ended.
@@ -27,6 +28,7 @@ from .. import _drivers
 from ..devices import devices
 from ..looks import Camera
 from ..scene import Scene, load
+from . import leaving
 from .aimed import Right, aim, in_doubles
 from .engines import Answer
 from .machine import processor
@@ -35,7 +37,6 @@ from .workload import Array, Mesh, Query, room, sphere
 
 SAMPLE = 40  # rays of a unit that are held against exact arithmetic
 GIVEN_UP = 3600  # seconds after which a unit that isn't finished is free again
-LAST_PLACES = 2**-51  # that the t of doubles may be off
 VERIFIED = ("leaks", "lost_hits", "self_hits", "hits_behind", "disagreements", "nan", "film_not_finite")
 
 Random = np.random.Generator
@@ -144,11 +145,17 @@ def run(unit: Unit) -> dict[str, Any]:
         kinds: list[tuple[str, type[np.floating[Any]]]] = [("float", np.float32)]
         if unit.mesh is not None:
             kinds.append(("double", np.float64))
+        sampled = 0
         for geometry, dtype in kinds:
             scene = load(file, geometry=geometry)
             _ask(scene, unit.rays.of(dtype), unit.closed, geometry, found)
             traced += 4 * len(unit.rays)
-        sampled = 0 if unit.mesh is None else _hold_against_exact(scene, unit.mesh, unit.seed, found)
+            if unit.mesh is not None:
+                n = len(unit.rays) // 4
+                sampled += leaving.ask(scene, unit.mesh, n, unit.seed, dtype, found)
+                traced += 4 * n
+        if unit.mesh is not None:
+            sampled += _hold_against_exact(scene, unit.mesh, unit.seed, found)
     device = next((d.name for d in devices() if d.usable), "")
     about = {"unit": unit.seed, "kdray": version, "device": device, "processor": processor(), "scene": unit.name}
     return {
@@ -215,7 +222,7 @@ def _hold_against_exact(scene: Scene, mesh: Mesh, seed: int, found: Counter[str]
     judged = Right(mesh, query).judge(Answer(hits.t, hits.primitive), count)
     for name in ("lost", "false", "other", "parity"):
         found[f"exact: {name}"] += sum(judged[name])
-    found["exact: t"] += bool(judged["t_off"] and judged["t_off"]["largest"] > LAST_PLACES)
+    found["exact: t"] += bool(judged["t_off"] and judged["t_off"]["largest"] > leaving.LAST_PLACES)
     return int(judged["judged"])
 
 
