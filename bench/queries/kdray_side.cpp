@@ -38,8 +38,8 @@ class KdrayAsker : public Asker {
   void ask(Question question, const QuerySet& set, std::size_t first, std::size_t n, Answers& a) override {
     if (!in_double_) return ask(question, set, first, n, a, a.t);
     if (!doubles_ || doubles_->of != &set) doubles_.emplace(set);
-    a.exact_t.resize(a.t.size());
-    ask(question, *doubles_, first, n, a, a.exact_t);
+    a.in_double = true;
+    ask(question, *doubles_, first, n, a, a.double_t);
   }
 
  private:

@@ -31,7 +31,8 @@ inline Question question_of(std::string_view name) {
 struct Answers {
   // Of `closest`; of `points` the distance is `t`.
   std::vector<float> t, u, v;
-  std::vector<double> exact_t;  // in place of t, from a side that answers in doubles
+  std::vector<double> double_t;  // in place of t, from a side that answers in doubles
+  bool in_double = false;
   std::vector<std::uint32_t> geometry, primitive;
   std::vector<float> point;       // of `points`
   std::vector<std::uint8_t> hit;  // of `any`, `inside`
@@ -41,14 +42,14 @@ struct Answers {
   // Capacity for what a question about n rays or points is answered by.
   Answers(Question question, std::size_t n) {
     const bool is_place = question == Question::closest || question == Question::points;
-    if (is_place || question == Question::distance) t.resize(n);
+    if (is_place || question == Question::distance) t.resize(n), double_t.resize(n);
     if (is_place) u.resize(n), v.resize(n), geometry.resize(n), primitive.resize(n);
     if (question == Question::points) point.resize(3 * n);
     if (question == Question::any || question == Question::inside) hit.resize(n);
     if (question == Question::count) count.resize(n);
   }
 
-  double t_of(std::size_t i) const { return exact_t.empty() ? double{t[i]} : exact_t[i]; }
+  double t_of(std::size_t i) const { return in_double ? double_t[i] : double{t[i]}; }
 };
 
 class Asker {

@@ -202,11 +202,13 @@ def test_they_begin_at_vertices_on_edges_and_within() -> None:
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 def test_answers_of_another_surface_are_wrong(dtype: type[np.floating[Any]]) -> None:
     mesh = bench.sphere(6)
+    rays = bench.Query(np.zeros((80, 3)), np.ones((80, 3)))
+    unit = campaign.Unit(8, "ball", 1, [], mesh, rays, True)
     geometry = "float" if dtype == np.float32 else "double"
     for size, is_wrong in ((1, False), (1 + 1e-3, True)):
         scene = kdray.Scene(geometry=geometry)
         scene.add_mesh(mesh.vertices.astype(dtype) * dtype(size), mesh.triangles)
         found: Counter[str] = Counter()
-        judged = leaving.ask(scene, mesh, 2000, 8, dtype, found)
+        asked, judged = leaving.ask(scene, unit, dtype, found)
         assert bool(sum(found.values())) == is_wrong, found
-        assert judged == 0 if dtype == np.float32 else judged > 6
+        assert asked > 4 * leaving.MANY and judged == 0 if dtype == np.float32 else judged > 12

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <optional>
 #include <random>
 #include <utility>
@@ -338,6 +339,55 @@ TEST_P(DoubleScenes, IntervalsEndAtTheDoublesTold) {
 }
 
 // One ray that is none among many, from near by and from afar.
+// One origin for all, rows with gaps, rows at odd addresses, and floats; more than whole groups of eight.
+TEST_P(DoubleScenes, ManyRaysMayLieInMemoryInAnyWay) {
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed + 11);
+  const DoubleMesh mesh = ring(9, 7, {0.5, 0.25, -0.5}, 1, random);
+  const Scene scene = scene_of(mesh);
+  const std::size_t n = kMany + 5;
+  const RayList list = aimed(mesh, n, 1, random);
+  const auto ask = [&](const Rays& rays) {
+    std::vector<double> t(n);
+    scene.closest(rays, {.t = t});
+    return t;
+  };
+  struct Wide {
+    Point origin;
+    double between;
+    Point direction;
+    float after;
+  };
+  std::vector<Wide> wide(n);
+  std::vector<double> t_min(n), t_max(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    wide[i] = {list.origins[i], NAN, list.directions[i], 0};
+    t_max[i] = i % 3 == 0 ? 0.5 : kInfinity;
+  }
+  const std::vector<double> right = ask(list.rays());
+  EXPECT_GT(std::ranges::count_if(right, [](double t) { return std::isfinite(t); }), n / 4);
+  const auto rows = [&](const Point& first) { return Points(&first[0], n, sizeof(Wide)); };
+  EXPECT_EQ(ask({rows(wide[0].origin), rows(wide[0].direction)}), right);
+  EXPECT_EQ(ask({list.rays().origins, rows(wide[0].direction)}), right);
+  std::vector<char> odd(n * sizeof(Point) + 1);
+  std::memcpy(odd.data() + 1, list.directions.data(), n * sizeof(Point));
+  const Points odd_rows(reinterpret_cast<const double*>(odd.data() + 1), n, sizeof(Point));
+  EXPECT_EQ(ask({list.rays().origins, odd_rows}), right);
+  const std::vector<Point> one(n, list.origins[0]);
+  EXPECT_EQ(ask({Points(&list.origins[0][0], 1, sizeof(Point)), list.rays().directions}),
+            ask({Points(&one[0][0], n, sizeof(Point)), list.rays().directions}));
+  std::vector<std::array<float, 3>> floats(n);
+  std::vector<Point> of_floats(n);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      of_floats[i][k] = floats[i][k] = static_cast<float>(list.directions[i][k]);
+  EXPECT_EQ(ask({list.rays().origins, Points(&floats[0][0], n, sizeof floats[0])}),
+            ask({list.rays().origins, Points(&of_floats[0][0], n, sizeof(Point))}));
+  const std::vector<double> ended = ask(
+      {.origins = list.rays().origins, .directions = list.rays().directions, .t_min = t_min, .t_max = t_max});
+  for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(ended[i], right[i] < t_max[i] ? right[i] : kInfinity) << i;
+}
+
 TEST_P(DoubleScenes, AFaultyRayIsToldAmongMany) {
   SCOPED_TRACE(kSeed);
   std::mt19937 random(kSeed + 7);

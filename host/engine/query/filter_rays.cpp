@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "engine/query/check_rays.h"
@@ -165,8 +166,9 @@ class EightRows {
 
  private:
   static bool is_dense(const Points& points, std::size_t n) {
-    return points.size() == n && points.first_of<const double>() != nullptr &&
-           points.stride() == 3 * sizeof(double);
+    const double* const first = points.first_of<const double>();
+    return points.size() == n && first != nullptr && points.stride() == 3 * sizeof(double) &&
+           reinterpret_cast<std::uintptr_t>(first) % alignof(double) == 0;
   }
   static void put(double* row, const dvec3& v) {
     for (int k = 0; k < 3; ++k) row[k] = v[k];

@@ -151,9 +151,8 @@ def run(unit: Unit) -> dict[str, Any]:
             _ask(scene, unit.rays.of(dtype), unit.closed, geometry, found)
             traced += 4 * len(unit.rays)
             if unit.mesh is not None:
-                n = len(unit.rays) // 4
-                sampled += leaving.ask(scene, unit.mesh, n, unit.seed, dtype, found)
-                traced += 4 * n
+                asked, judged = leaving.ask(scene, unit, dtype, found)
+                traced, sampled = traced + asked, sampled + judged
         if unit.mesh is not None:
             sampled += _hold_against_exact(scene, unit.mesh, unit.seed, found)
     device = next((d.name for d in devices() if d.usable), "")

@@ -1,13 +1,14 @@
 """Rays that begin on a mesh's surface, as a campaign asks them.
 
-What begins at a vertex never hits a triangle that has it as a corner; forms of a question agree; and of doubles hits
-are those of exact arithmetic. (Counts and lists have what lies at 0 as well, which closest and any hits haven't.)
+What begins at a vertex never hits a triangle that has it as a corner; forms of a question agree, and few rays get what
+many get (the host answers few of doubles alone); and of doubles hits are those of exact arithmetic where meshes are
+closed. (Counts and lists have what lies at 0 as well, which closest and any hits haven't.)
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,7 +16,11 @@ from ..scene import Scene
 from .exact import Exact
 from .workload import Array, Mesh, Query
 
-SAMPLE = 12  # rays that are held against exact arithmetic
+if TYPE_CHECKING:
+    from .campaign import Unit
+
+MANY, FEW = 2**14, 2**12  # rays of doubles that the device looks at first, and that the host answers alone
+SAMPLE = 24  # rays that are held against exact arithmetic
 LAST_PLACES = 2**-51  # that the t of doubles may be off
 
 
@@ -50,29 +55,36 @@ def leave(mesh: Mesh, n: int, seed: int) -> tuple[Query, Array]:
     return Query(starts, directions.astype(mesh.vertices.dtype)), begins_at
 
 
-def ask(scene: Scene, mesh: Mesh, n: int, seed: int, dtype: type[np.floating[Any]], found: Counter[str]) -> int:
-    """Counts wrong answers by kind; returns how many rays exact arithmetic judged."""
-    query, begins_at = leave(mesh, n, seed)
+def ask(scene: Scene, unit: Unit, dtype: type[np.floating[Any]], found: Counter[str]) -> tuple[int, int]:
+    """Counts wrong answers by kind; returns how many rays there were, and how many exact arithmetic judged."""
+    mesh, n = unit.mesh, max(len(unit.rays) // 4, MANY)
+    assert mesh is not None
+    query, begins_at = leave(mesh, n, unit.seed)
     given = query.of(dtype)
     assert given.directions is not None
     rays = given.origins, given.directions
     closest, any_hit = scene.closest_hit(*rays, fields=["t", "primitive"]), scene.any_hit(*rays)
+    few = scene.closest_hit(rays[0][:FEW], rays[1][:FEW], fields=["t", "primitive"])
     count, splits = scene.count_hits(*rays), scene.all_hits(*rays).splits
     hit = closest.t < np.inf
-    wrong = {"any": any_hit != hit, "all": np.diff(splits) != count}
+    wrong = {
+        "any": any_hit != hit,
+        "all": np.diff(splits) != count,
+        "few": (few.t != closest.t[:FEW]) | (few.primitive != closest.primitive[:FEW]),
+    }
     if mesh.vertices.dtype == np.float32 or dtype == np.float64:  # else they begin beside the vertices
         corners = mesh.triangles[np.where(hit, closest.primitive, 0)]
         wrong["own"] = hit & (corners == begins_at[:, None]).any(axis=1)
     judged = 0
-    if dtype == np.float64:
-        sample = slice(0, SAMPLE)
+    if dtype == np.float64 and unit.closed:
+        sample = np.random.default_rng(unit.seed).choice(n, SAMPLE)
         t, nearest, _, touches = Exact(mesh.vertices, mesh.triangles).ask(rays[0][sample], rays[1][sample])
         sure, here = ~touches, np.isfinite(t)
         judged = int(np.count_nonzero(sure))
         wrong["hit"] = sure & (hit[sample] != here)
         both = sure & hit[sample] & here
         wrong["t"] = np.abs(closest.t[sample][both] - t[both]) > LAST_PLACES * t[both]
-        pairs = zip(closest.primitive[sample][both], np.array(nearest, object)[both], strict=True)
-        wrong["other"] = np.array([triangle not in those for triangle, those in pairs], bool)
+        named = zip(closest.primitive[sample][both], np.flatnonzero(both), strict=True)
+        wrong["other"] = np.array([triangle not in nearest[i] for triangle, i in named], bool)
     found.update({f"leaving, {np.dtype(dtype)}: {name}": int(np.count_nonzero(w)) for name, w in wrong.items()})
-    return judged
+    return 4 * n + FEW, judged
