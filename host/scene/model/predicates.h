@@ -67,15 +67,19 @@ inline int orient_sign(const dvec2& a, const dvec2& b, const dvec2& c) {
 
 }  // namespace exact
 
-inline int orient_sign(const dvec2& a, const dvec2& b, const dvec2& c) {
+// Returns 0 where doubles alone can't tell, as well.
+inline int sure_orient_sign(const dvec2& a, const dvec2& b, const dvec2& c) {
   const double left = (b.x - a.x) * (c.y - a.y);
   const double right = (b.y - a.y) * (c.x - a.x);
   const double det = left - right;
   constexpr double kHalfUlp = 1.1102230246251565e-16;
   const double bound = (3 + 16 * kHalfUlp) * kHalfUlp * (std::abs(left) + std::abs(right));
-  if (det > bound) return 1;
-  if (det < -bound) return -1;
-  return exact::orient_sign(a, b, c);
+  return (det > bound) - (det < -bound);
+}
+
+inline int orient_sign(const dvec2& a, const dvec2& b, const dvec2& c) {
+  const int sure = sure_orient_sign(a, b, c);
+  return sure != 0 ? sure : exact::orient_sign(a, b, c);
 }
 
 }  // namespace kdray::scene

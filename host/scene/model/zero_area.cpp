@@ -162,11 +162,15 @@ std::vector<vec3> ZeroAreaSides::normals(const std::function<vec3(std::size_t)>&
 }
 
 bool is_flat(const layout::Triangle& t) {
-  const auto& v = t.v;
-  const auto flat_across = [&](int i, int j) {
-    return orient_sign({v[0][i], v[0][j]}, {v[1][i], v[1][j]}, {v[2][i], v[2][j]}) == 0;
+  const auto is_seen_across = [&](std::size_t i, std::size_t k, const auto& sign) {
+    const auto place = [&](const float(&v)[3]) { return dvec2(v[i], v[k]); };
+    return sign(place(t.v[0]), place(t.v[1]), place(t.v[2])) != 0;
   };
-  return flat_across(0, 1) && flat_across(1, 2) && flat_across(2, 0);
+  const auto is_seen = [&](const auto& sign) {
+    return is_seen_across(0, 1, sign) || is_seen_across(1, 2, sign) || is_seen_across(2, 0, sign);
+  };
+  // Exact signs only where no axis is sure: walls have none across two.
+  return !is_seen(sure_orient_sign) && !is_seen(orient_sign);
 }
 
 std::vector<ZeroAreaTriangle> find_zero_area(const Array<layout::Triangle>& triangles) {
