@@ -83,6 +83,7 @@ struct AllSessions {
   Sessions<Passes> of_all;     // of every geometry, whatever its mask: inside
   Sessions<PointSession> points;
   std::atomic<std::size_t> counted_at_once{0}, collected_at_once{0}, points_at_once{0};  // Pace
+  std::atomic<std::size_t> asked_in_between{0};  // rays: see QueryContext::filters
 
  private:
   static Target without_masks(Target target) {
@@ -105,11 +106,13 @@ struct QueryContext {
 
   const prepare::Prepared& scene() const { return places.front().target.scene; }
   bool has_masks() const { return places.front().target.masks() != nullptr; }
-  // Of a scene of doubles: whether the devices are to look at so many rays first. As few as take the host
-  // less time than a first launch takes a device are the host's.
+  // Of a scene of doubles: whether the devices are to look at so many rays first, that are asked now. Few are
+  // the host's, and of calls in between the first ones, which take it less time than devices take to begin.
   bool filters(std::size_t n_rays) const {
-    constexpr std::size_t kFew = std::size_t{1} << 14;
-    return n_rays >= kFew && std::ranges::all_of(places, [](const Place& p) { return p.target.filters; });
+    constexpr std::size_t kFew = std::size_t{1} << 10, kMany = std::size_t{1} << 14;
+    if (n_rays < kFew || !std::ranges::all_of(places, [](const Place& p) { return p.target.filters; }))
+      return false;
+    return n_rays >= kMany || places.front().sessions.asked_in_between.fetch_add(n_rays) >= kMany;
   }
 };
 

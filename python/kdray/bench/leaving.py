@@ -19,7 +19,7 @@ from .workload import Array, Mesh, Query
 if TYPE_CHECKING:
     from .campaign import Unit
 
-MANY, FEW = 2**14, 2**12  # rays of doubles that the device looks at first, and that the host answers alone
+MANY, FEW = 2**14, 2**9  # rays of doubles that the device looks at first, and that the host answers alone
 SAMPLE = 24  # rays that are held against exact arithmetic
 LAST_PLACES = 2**-51  # that the t of doubles may be off
 
