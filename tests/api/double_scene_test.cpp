@@ -590,6 +590,54 @@ TEST_P(DoubleScenes, PointsAreMeasuredToTheDoubles) {
   }
 }
 
+// Of many the device looks first, of few it doesn't: also within a radius, and from beyond the scene.
+TEST_P(DoubleScenes, ManyPointsAreMeasuredAsFewAre) {
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed + 12);
+  DoubleMesh mesh = ring(9, 7, {0.1, 0.2, 0.3}, 1e-9, random);
+  add(mesh, ring(9, 7, {3, 4, 5}, 10, random));
+  add(mesh, sheets());
+  const Scene scene = scene_of(mesh);
+  std::vector<Point> points;
+  std::normal_distribution<double> around;
+  while (points.size() < kMany) {
+    const Point corner = mesh.corner(random() % mesh.size(), random() % 3);
+    const double far = std::pow(10.0, static_cast<int>(random() % 16) - 11);
+    points.push_back(corner);
+    if (random() % 8 == 0) continue;  // it lies on the surface
+    for (double& c : points.back()) c += far * around(random);
+  }
+  points[0] = {1e300, 0, 0};
+  struct Answers {
+    std::vector<double> distance, with_sign;
+    std::vector<std::uint32_t> primitive;
+  };
+  const auto ask = [&](std::size_t first, std::size_t n, double radius) {
+    Answers a{std::vector<double>(n), std::vector<double>(n), std::vector<std::uint32_t>(n)};
+    const Points given(&points[first][0], n, sizeof(Point));
+    PointOptions options;
+    options.radius = radius;
+    scene.closest_points(given, {.distance = a.distance, .primitive = a.primitive}, options);
+    scene.signed_distance(given, a.with_sign, options);
+    return a;
+  };
+  for (const double radius : {kInfinity, 1e-3, 0.0}) {
+    SCOPED_TRACE(radius);
+    const Answers many = ask(0, points.size(), radius);
+    std::size_t n_near = 0;
+    for (std::size_t first = 0; first < points.size(); first += 512) {
+      const Answers few = ask(first, 512, radius);
+      for (std::size_t i = 0; i < 512; ++i) {
+        ASSERT_EQ(many.distance[first + i], few.distance[i]) << first + i;
+        ASSERT_EQ(many.primitive[first + i], few.primitive[i]) << first + i;
+        ASSERT_EQ(many.with_sign[first + i], few.with_sign[i]) << first + i;
+        n_near += few.distance[i] <= radius;
+      }
+    }
+    EXPECT_GT(n_near, points.size() / 16);
+  }
+}
+
 TEST_P(DoubleScenes, WhatIsNoMeshIsRefused) {
   Scene scene;
   const std::vector<double> center{0, 0, 0}, radius{1};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -285,6 +286,34 @@ void squares_to_boxes(const WideNode& node, const dvec3& place, double margin, f
   }
 }
 
+// The triangles of a block whose boxes lie within the square of a distance, by what their floats tell.
+std::uint32_t triangles_within(float square, const layout::u32* rows, std::size_t block, const dvec3& place,
+                               double margin) {
+  const auto row = [&](std::size_t number, std::size_t first) {
+    Slots slots;
+    std::memcpy(&slots, rows + number * block + first, sizeof slots);
+    return slots;
+  };
+  const vec3 at(place);
+  const float wider = widened(margin, place);
+  std::uint32_t bits = 0;
+  for (std::size_t first = 0; first < block; first += 4) {
+    Slots sum{};
+    for (int k = 0; k < 3; ++k) {
+      const auto axis = static_cast<std::size_t>(k);
+      const Slots p = row(axis, first), q = row(3 + axis, first), r = row(6 + axis, first);
+      const Slots below = lesser(p, lesser(q, r)) - (at[k] + wider),
+                  above = (at[k] - wider) - greater(p, greater(q, r));
+      const Slots way = greater(Slots{}, greater(below, above));
+      sum += way * way;
+    }
+    const SlotsChosen chosen = sum <= square;
+    for (int i = 0; i < 4; ++i)
+      bits |= static_cast<std::uint32_t>(chosen[i] & 1) << (first + static_cast<std::size_t>(i));
+  }
+  return bits;
+}
+
 }  // namespace
 
 std::optional<DoubleScene::Nearest> DoubleScene::nearest(const dvec3& place, double most) const {
@@ -318,8 +347,10 @@ std::optional<DoubleScene::Nearest> DoubleScene::nearest(const dvec3& place, dou
     }
     const auto block = static_cast<std::size_t>(scene_->wide.block);
     visit_blocks(scene_->wide, entry.child, [&](const layout::u32* rows, std::size_t n) {
-      for (std::size_t i = 0; i < n; ++i) {
-        const std::uint32_t triangle = rows[(KDRAY_TRIANGLE_ROWS - 1) * block + i] & ~KDRAY_WIDE_LAST;
+      std::uint32_t lanes = triangles_within(rounded_up(square / kFloats), rows, block, place, margin_);
+      for (lanes &= (2u << (n - 1)) - 1; lanes != 0; lanes &= lanes - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+        const std::uint32_t triangle = rows[(KDRAY_TRIANGLE_ROWS - 1) * block + lane] & ~KDRAY_WIDE_LAST;
         ExactLine::Corners corners = doubles_->at(triangle);
         for (dvec3& corner : corners) corner -= place;
         const NearPoint near = near_of(corners);

@@ -81,6 +81,8 @@ inline constexpr double kPointReach = double{KDRAY_POINT_REACH};
 struct Places {
   const LocalSpace& space;
 
+  bool is_moved(const dvec3& point) const { return is_far(local_of(point)); }
+
   dvec3 place_of(const dvec3& point) const {
     const dvec3 local = local_of(point);
     return is_far(local) ? safe_normalize(half_way(point)) * kPointReach : local;

@@ -148,15 +148,31 @@ class Nearest {
     const DoubleScene scene(context.scene(), context.table);
     const LocalSpace& space = context.frame.space();
     const Places places{space};
+    // Many are looked up one near the other, for the caches.
+    constexpr std::size_t kMany = std::size_t{1} << 10;
+    NearbyOrder order(context.scene().geometry.bounds);
+    std::vector<std::uint32_t> cells(points.size() < kMany ? 0 : points.size());
+    for_each_index(cells.size(),
+                   [&](std::size_t i) { cells[i] = order.cell_of(places.place_of(points[i])); });
+    std::span<const std::uint32_t> in_order;
+    if (!cells.empty()) in_order = order.sorted(cells);
     for_each_slow_grain(points.size(), std::nullopt, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const auto nearest = scene.nearest(places.place_of(points[i]), kInfinity);
+      std::optional<dvec3> before;  // what the last one found
+      for (std::size_t at = begin; at < end; ++at) {
+        const std::size_t i = in_order.empty() ? at : in_order[at];
+        const dvec3 place = places.place_of(points[i]);
+        constexpr double kMore = 1 + 0x1p-40;
+        const double most = places.is_moved(points[i]) ? kInfinity : kMore * space.local_length(radius);
+        const double near = before ? kMore * glm::distance(place, *before) : kInfinity;
+        auto nearest = scene.nearest(place, std::min(most, near));
+        if (!nearest && near < most) nearest = scene.nearest(place, most);  // rounding, or it overflowed
         if (!nearest) continue;
-        const dvec3 point = space.world(nearest->point);
+        before = nearest->point;
         const double distance = places.distance(points[i], nearest->point, nearest->distance);
         if (distance > radius) continue;
         const auto number = static_cast<std::int32_t>(query::number_of(context.scene().flat, nearest->ref));
-        found_[i] = {distance, point, number, static_cast<float>(nearest->u), static_cast<float>(nearest->v)};
+        found_[i] = {distance, space.world(nearest->point), number, static_cast<float>(nearest->u),
+                     static_cast<float>(nearest->v)};
       }
     });
   }
