@@ -115,7 +115,14 @@ void append_rows(Imf::InputFile& input, const ColorNames& names, int left, int f
     for (std::size_t i = n_before; i < image.pixels.size(); ++i) image.pixels[i] = vec3(image.pixels[i].x);
 }
 
-void check_window(const Imf::Header& header, const std::string& file, std::uint64_t most) {
+// Looks at the first header, the picture's, before OpenEXR makes buffers as wide as it says.
+void check_header(std::string_view bytes, const std::string& file, std::uint64_t most) {
+  MemoryStream stream(bytes, file);
+  int version = 0;
+  for (std::size_t i = 4; i-- > 0;) version = version << 8 | static_cast<unsigned char>(bytes[4 + i]);
+  stream.seekg(8);
+  Imf::Header header;
+  header.readFrom(stream, version);
   const auto window = header.dataWindow();
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
@@ -126,22 +133,10 @@ void check_window(const Imf::Header& header, const std::string& file, std::uint6
                       "make it smaller: " + std::to_string(most) + " are the most");
 }
 
-// The first header is looked at before OpenEXR makes buffers as wide as it says.
-void check_first_header(std::string_view bytes, const std::string& file, std::uint64_t most) {
-  MemoryStream stream(bytes, file);
-  int version = 0;
-  for (std::size_t i = 4; i-- > 0;) version = version << 8 | static_cast<unsigned char>(bytes[4 + i]);
-  stream.seekg(8);
-  Imf::Header header;
-  header.readFrom(stream, version);
-  check_window(header, file, most);
-}
-
 Image read_all(std::string_view bytes, const std::string& file, std::uint64_t most) {
-  check_first_header(bytes, file, most);
+  check_header(bytes, file, most);
   MemoryStream stream(bytes, file);
   Imf::InputFile input(stream, exr_threads());
-  check_window(input.header(), file, most);
   const auto window = input.header().dataWindow();
   const ColorNames names = find_color(input.header().channels(), file);
   Image image;

@@ -169,7 +169,7 @@ bool is_flat(const layout::Triangle& t) {
   const auto is_seen = [&](const auto& sign) {
     return is_seen_across(0, 1, sign) || is_seen_across(1, 2, sign) || is_seen_across(2, 0, sign);
   };
-  // Exact signs only where no axis is sure: walls have none across two.
+  // Asks for exact signs only where no projection is sure: a wall vanishes in two of the three.
   return !is_seen(sure_orient_sign) && !is_seen(orient_sign);
 }
 
