@@ -5,6 +5,7 @@
 #include "api/precision.h"
 #include "api/record.h"
 #include "base/timer.h"
+#include "engine/query/scene_arguments.h"
 
 namespace kdray::api {
 
@@ -12,6 +13,18 @@ namespace {
 
 scene::Copies copies_of(const prepare::Prepared& scene) {
   return scene.doubles ? scene.doubles->copies : scene::Copies();
+}
+
+// Whether devices are to look first at what is asked of a scene of doubles: they leave the host all rays that
+// come near shapes, and widen boxes by 11u of the scene's size more than what lies in them needs.
+bool suits_filter(const prepare::Prepared& scene) {
+  const scene::DoubleGeometry* doubles = scene.doubles.get();
+  return doubles != nullptr && doubles->corners.size() > doubles->n_shapes() &&
+         doubles->apart <= 0x1p-21 * query::world_max(scene.geometry.bounds);
+}
+
+query::LocalFrame frame_of(const prepare::Prepared& scene) {
+  return query::LocalFrame(scene.geometry, scene.doubles ? scene.doubles->apart : 0);
 }
 
 query::GeometryTable table_of_one(const prepare::Prepared& scene) {
@@ -32,7 +45,7 @@ query::GeometryTable table_of_one(const prepare::Prepared& scene) {
 Committed::Committed(const PreparedScene& scene, query::GeometryTable table, const DeviceOptions& device)
     : scene_(scene),
       table_(std::move(table)),
-      frame_(scene_.prepared().geometry),
+      frame_(frame_of(scene_.prepared())),
       devices_(open_scene(scene_.prepared(), device)) {
   open_places({});
 }
@@ -40,7 +53,7 @@ Committed::Committed(const PreparedScene& scene, query::GeometryTable table, con
 Committed::Committed(const PreparedScene& scene, const DeviceOptions& device, const RayWalk& walk)
     : scene_(scene),
       table_(table_of_one(scene_.prepared())),
-      frame_(scene_.prepared().geometry),
+      frame_(frame_of(scene_.prepared())),
       devices_(open_scene(scene_.prepared(), device)) {
   open_places(walk);
 }
@@ -54,7 +67,7 @@ void Committed::open_places(const RayWalk& walk) {
   const std::vector<std::uint32_t> masks = table_.masks(instances);
   for (query::Target& target : query::targets_of(*devices_, traversal, walk.precision)) {
     target.space = LocalSpace();
-    target.filters = scene_.prepared().doubles && target.context.rounds_division_correctly();
+    target.filters = target.context.rounds_division_correctly() && suits_filter(scene_.prepared());
     if (!masks.empty())
       target.masks = target.sub_device > 0 ? places_.back().target.masks
                                            : target.context.upload_copy(

@@ -24,6 +24,9 @@ DBox bounds_of(const prepare::Prepared& prepared) {
   if (const auto& doubles = prepared.doubles) {
     for (const auto& corners : doubles->corners)
       for (const std::uint32_t corner : corners) local.grow(doubles->vertices[corner]);
+    primitives::for_each_shape([&](auto kind) {
+      for (const auto& shape : decltype(kind)::of(*doubles)) local.grow(primitives::bounds_of(shape));
+    });
   } else if (const Box& floats = prepared.geometry.bounds; !floats.empty()) {
     local = {dvec3(floats.lo), dvec3(floats.hi)};
   }

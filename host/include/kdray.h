@@ -257,8 +257,8 @@ typedef struct kdray_commit_options {
   /* Where only vertices have moved, the tree is fitted to them unless what a ray is expected to cost has
    * grown by more than this since it was built; 0: 1.5; below 0: it is always built. */
   double refit_growth;
-  /* 0 float; 1 double: queries answer for meshes' vertices as they were given, exactly; 2: double where the
-   * vertices of a scene of meshes without instances are no floats. */
+  /* 0 float; 1 double: queries answer for vertices and shapes as they were given, exactly; 2: double where
+   * the vertices of a scene of meshes without instances are no floats. */
   int32_t geometry;
 } kdray_commit_options;
 KDRAY_API kdray_status kdray_commit(kdray_scene* scene, const kdray_commit_options* options);

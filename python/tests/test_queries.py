@@ -333,13 +333,16 @@ def test_double_geometry_keeps_to_the_rays_type_and_goes_with_copies(speck, tmp_
     assert kdray.load(file, geometry="double").closest_hit(*ray).t == t
 
 
-def test_double_geometry_refuses_what_is_no_mesh():
+def test_double_geometry_is_that_of_shapes_as_well():
     with pytest.raises(kdray.UsageError, match='geometry is "float", "double" or "auto", not'):
         kdray.Scene(geometry="float64")
     shapes = kdray.Scene(geometry="double")
-    shapes.add_spheres([[0, 0, 0]], 1)
-    with pytest.raises(kdray.InputError, match="primitives other than triangles, which a scene of doubles"):
-        shapes.any_hit([0, 0, 5], [0, 0, -1])
+    shapes.add_spheres([[0.1, 0.2, 1e7]], 0.3)
+    hit = shapes.closest_hit([0.1, 0.2, 1e7 + 5], [0, 0, -1])
+    assert (hit.t, hit.normal.tolist()) == (5 - 0.3, [0, 0, 1])
+    assert shapes.count_hits([0.1 + 0.3 - 1e-15, 0.2, 0], [0, 0, 1]) == 2
+    assert shapes.count_hits([0.1 + 0.3 + 1e-15, 0.2, 0], [0, 0, 1]) == 0
+    assert shapes.signed_distance([0.1, 0.2, 1e7 + 0.25]) == pytest.approx(-0.05, abs=1e-9)
 
 
 def test_geometry_is_double_by_itself_where_vertices_are_no_floats(ball_mesh):

@@ -12,7 +12,6 @@
 
 #include "api/double_scenes.h"
 #include "kdray/kdray.h"
-#include "support/errors.h"
 
 namespace kdray {
 namespace {
@@ -20,7 +19,6 @@ namespace {
 using namespace test::doubles;
 using test::Exact;
 using test::exact;
-using test::fails;
 using test::minus;
 using test::Point;
 using test::volume;
@@ -438,13 +436,6 @@ TEST_P(DoubleScenes, PointsAreMeasuredToTheDoubles) {
     std::erase_if(ahead, [](const Crossing& hit) { return hit.t < 0; });
     ASSERT_EQ(inside[i], ahead.size() % 2);
   }
-}
-
-TEST_P(DoubleScenes, WhatIsNoMeshIsRefused) {
-  Scene scene;
-  const std::vector<double> center{0, 0, 0}, radius{1};
-  scene.add_spheres({center, radius});
-  EXPECT_TRUE(fails([&] { scene.commit(options()); }, "other than triangles"));
 }
 
 }  // namespace

@@ -122,7 +122,7 @@ Prepared prepare_as(const TreeOptions& options, const scene::Scene& scene, const
 Prepared prepare_copied(const scene::Scene& scene, scene::Copies copies, const TreeOptions& options) {
   const scene::Geometry geometry = scene::make_geometry_for_doubles(scene);
   Prepared made = prepare_as(options, scene, geometry);
-  auto doubles = std::make_shared<scene::DoubleTriangles>(scene::make_double_triangles(scene, geometry));
+  auto doubles = std::make_shared<scene::DoubleGeometry>(scene::make_double_geometry(scene, geometry));
   doubles->copies = std::move(copies);
   made.doubles = std::move(doubles);
   return made;
@@ -130,10 +130,6 @@ Prepared prepare_copied(const scene::Scene& scene, scene::Copies copies, const T
 
 // The scene's instances become copies: a vertex is where its transform brings it in doubles.
 Prepared prepare_in_doubles(const scene::Scene& scene, const TreeOptions& options) {
-  const auto is_of_shapes = [&](const scene::Instance& i) { return has_shapes(*scene.meshes[i.mesh]); };
-  if (has_shapes(scene) || std::ranges::any_of(scene.instances, is_of_shapes))
-    throw input_error(scene.name, 0, "primitives other than triangles, which a scene of doubles doesn't have",
-                      "leave them out, or ask about it in floats");
   if (scene.instances.empty()) return prepare_copied(scene, {}, options);
   scene::Scene copied = scene;
   scene::Copies copies = scene::flatten_instances(copied);

@@ -70,10 +70,10 @@ struct Prepared {
   kdtree::Statistics tree;
   flatten::FlatScene flat;
   flatten::WideForm wide;
-  std::shared_ptr<const scene::DoubleTriangles> doubles;  // where they were asked for; not kept in files
-  std::shared_ptr<const PlacedMeshes> placed_meshes;      // where there are instances; not kept in files
-  TreeOptions tree_options;                               // that it was made with
-  Seconds seconds;                                        // that it took to make
+  std::shared_ptr<const scene::DoubleGeometry> doubles;  // where they were asked for; not kept in files
+  std::shared_ptr<const PlacedMeshes> placed_meshes;     // where there are instances; not kept in files
+  TreeOptions tree_options;                              // that it was made with
+  Seconds seconds;                                       // that it took to make
 
   std::size_t bytes() const { return flat.bytes() + wide.bytes(); }
   std::size_t largest_array() const;  // what a device has to hold in one piece

@@ -263,11 +263,10 @@ CLI::Option* add_build_option(CLI::App& app, BuildQuality& quality) {
 
 void add_geometry_option(CLI::App& app, VertexPrecision& geometry) {
   static constexpr std::array<std::string_view, 3> kGeometries = {"float", "double", "auto"};
-  add_choice(
-      app, "--geometry",
-      "What vertices are: float (default), double (of meshes: exact, and slower), or auto: double where "
-      "they are no floats",
-      kGeometries, geometry);
+  add_choice(app, "--geometry",
+             "What vertices are: float (default), double (exact, and slower), or auto: double where "
+             "they are no floats",
+             kGeometries, geometry);
 }
 
 void add_tree_options(CLI::App& app, TreeOptions& tree) {

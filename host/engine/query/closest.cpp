@@ -62,12 +62,15 @@ class HitBlock {
       fill(out.instance, first, n_, [](std::size_t) { return kNoInstance; });
     fill(out.u, first, n_, [&](std::size_t i) { return u_[i]; });
     fill(out.v, first, n_, [&](std::size_t i) { return v_[i]; });
+    const auto point_of = [&](std::size_t i) {
+      return rays.origin(first + i) + t_[i] * rays.direction(first + i);
+    };
     fill_vectors(out.normal, first, n_, [&](std::size_t i) {
-      return is_hit(i) ? normal_of(context.scene().doubles->at(ref_[i] & KDRAY_REF_INDEX_MASK)) : dvec3(0);
+      const auto local = [&] { return context.frame.space().local(point_of(i)); };
+      return is_hit(i) ? normal_in_doubles(*context.scene().doubles, ref_[i], local) : dvec3(0);
     });
-    fill_vectors(out.point, first, n_, [&](std::size_t i) {
-      return is_hit(i) ? rays.origin(first + i) + t_[i] * rays.direction(first + i) : dvec3(HUGE_VAL);
-    });
+    fill_vectors(out.point, first, n_,
+                 [&](std::size_t i) { return is_hit(i) ? point_of(i) : dvec3(HUGE_VAL); });
   }
 
  private:

@@ -27,7 +27,7 @@ void put_first(std::size_t ray, std::span<const ExactHit> hits, std::uint32_t ma
 }  // namespace
 
 DoubleRays::DoubleRays(const QueryContext& context, const RayArrays& rays)
-    : context_(&context), rays_(&rays), scene_(context.scene(), context.table) {}
+    : context_(&context), rays_(&rays), scene_(context.scene(), &context.table) {}
 
 const char* DoubleRays::fault(std::size_t i) const {
   return fault_of(rays_->origin(i), rays_->direction(i), rays_->t_min(i), rays_->t_max(i));

@@ -12,6 +12,7 @@
 #include "engine/query/scene_arguments.h"
 #include "engine/query/surface.h"
 #include "engine/query/wide_boxes.h"
+#include "scene/primitives/shapes.h"
 
 namespace kdray::query {
 
@@ -41,18 +42,23 @@ bool visit_blocks(const flatten::WideForm& wide, std::uint32_t leaf, const Visit
 
 }  // namespace
 
-DoubleScene::DoubleScene(const prepare::Prepared& scene, const GeometryTable& table)
+DoubleScene::DoubleScene(const prepare::Prepared& scene, const GeometryTable* table)
     : scene_(&scene),
       doubles_(scene.doubles.get()),
-      table_(&table),
+      table_(table),
       reach_(world_max(scene.geometry.bounds)),
-      margin_(kBoxes * reach_),
-      has_every_bit_(table.has_every_bit()) {}
+      margin_(kBoxes * reach_ + scene.doubles->apart),
+      has_every_bit_(table == nullptr || table->has_every_bit()) {}
 
-// A triangle that may be hit: t lies between these.
+// A primitive that may be hit: t lies between these. Of a shape that is t as it is told, `rest` what is left,
+// and it may be hit at several: `nth`.
 struct DoubleScene::Candidate {
-  std::uint32_t triangle;
+  std::uint32_t ref;
   ExactLine::Bounds t;
+  std::uint32_t nth = 0;
+  double u = 0, rest = 0;
+
+  auto key() const { return std::pair(ref, nth); }
 };
 
 // A ray, and how far it goes on.
@@ -71,27 +77,51 @@ class DoubleScene::Line : public ExactLine {
   float end_in_floats() const { return rounded_up(end_ - ray_->start + slack(end_)); }
   void end_at(double t) { end_ = std::min(t, end_); }
 
-  // Whether the line crosses it, with t between t_min and where it ends; from_start: at 0, where t_min is 0,
-  // as well. Bounds its t.
-  bool hits(Candidate& candidate, bool from_start) const {
-    const Corners corners = scene_->doubles_->at(candidate.triangle);
-    candidate.t = bounds_of_t(corners);
-    if (candidate.t.most < ray_->t_min || candidate.t.least > end_ || !crosses(corners)) return false;
-    if (candidate.t.least > ray_->t_min && candidate.t.most < ray_->t_max) return true;
-    const double t = settle(candidate);
-    return (t > ray_->t_min || (from_start && t == 0 && ray_->t_min == 0)) && t < ray_->t_max;
+  // Calls visit(candidate) for each hit of a primitive with t between t_min and where the line ends, until
+  // one answers false; whether none did. from_start: at 0, where t_min is 0, as well.
+  template <class Visit>
+  bool visit_hits(std::uint32_t ref, bool from_start, const Visit& visit) {
+    if (is_triangle(ref)) {
+      Candidate candidate{ref, {}};
+      return !hits(candidate, from_start) || visit(candidate);
+    }
+    if (was_asked(ref)) return true;
+    std::uint32_t nth = 0;
+    for (const auto& [t, u, rest] : crossings_of_shape(ref)) {
+      const Candidate candidate{ref, {t, t}, nth++, u, rest};
+      if (t <= end_ && is_between(t, from_start) && !visit(candidate)) return false;
+    }
+    return true;
   }
 
-  // Exactly by t, then by number. False for the same triangle.
-  bool precedes(Candidate a, Candidate b) const {
-    if (a.triangle == b.triangle) return false;
+  // By t: of triangles exactly, of others as pairs have it; then triangles first, and by number. False for
+  // the same hit.
+  bool precedes(const Candidate& a, const Candidate& b) const {
+    if (a.key() == b.key()) return false;
     if (a.t.most < b.t.least) return true;
     if (b.t.most < a.t.least) return false;
-    settle(a), settle(b);
-    if (a.t.most < b.t.least) return true;
-    if (b.t.most < a.t.least) return false;
-    const int order = compare_t(scene_->doubles_->at(a.triangle), scene_->doubles_->at(b.triangle));
-    return order != 0 ? order < 0 : scene_->number_of(a.triangle) < scene_->number_of(b.triangle);
+    return is_triangle(a.ref) && is_triangle(b.ref) ? is_before(a, b) : place_of(a) < place_of(b);
+  }
+
+  // In that order. (Beside shapes that of triangles begins with pairs too, so that it is one.)
+  void sort(std::vector<Candidate>& candidates) const {
+    const auto is_of_shape = [](const Candidate& c) { return !is_triangle(c.ref); };
+    if (std::ranges::none_of(candidates, is_of_shape)) {
+      std::sort(candidates.begin(), candidates.end(),
+                [&](const Candidate& a, const Candidate& b) { return precedes(a, b); });
+      return;
+    }
+    struct Placed {
+      Place place;
+      Candidate candidate;
+    };
+    std::vector<Placed> placed;
+    for (const Candidate& candidate : candidates) placed.push_back({place_of(candidate), candidate});
+    std::sort(placed.begin(), placed.end(), [&](const Placed& a, const Placed& b) {
+      return a.place != b.place ? a.place < b.place
+                                : is_triangle(a.candidate.ref) && is_before(a.candidate, b.candidate);
+    });
+    for (std::size_t i = 0; i < placed.size(); ++i) candidates[i] = placed[i].candidate;
   }
 
  private:
@@ -100,8 +130,62 @@ class DoubleScene::Line : public ExactLine {
     return 0x1p-48 * (std::abs(ray_->start) + (std::isinf(t) ? 0 : std::abs(t)));
   }
 
+  // Where a hit comes beside shapes: t, with so much of what a double leaves that what lies in one place is
+  // there for pairs as well; whether it is a shape's; of shapes the number and which of its hits it is.
+  using Place = std::tuple<double, double, bool, std::uint32_t, std::uint32_t>;
+  Place place_of(const Candidate& c) const {
+    const Pair t = is_triangle(c.ref) ? t_in_pair(corners_of(c)) : Pair(c.t.least, c.rest);
+    const double step = 0x1p-96 * std::abs(t.high), rest = step > 0 ? std::nearbyint(t.low / step) : 0;
+    if (is_triangle(c.ref)) return {t.high, rest, false, 0, 0};
+    return {t.high, rest, true, scene_->number_of(c.ref), c.nth};
+  }
+
+  // Of triangles, exactly.
+  bool is_before(Candidate a, Candidate b) const {
+    settle(a), settle(b);
+    if (a.t.most < b.t.least) return true;
+    if (b.t.most < a.t.least) return false;
+    const int order = compare_t(corners_of(a), corners_of(b));
+    return order != 0 ? order < 0 : scene_->number_of(a.ref) < scene_->number_of(b.ref);
+  }
+
+  Corners corners_of(const Candidate& triangle) const {
+    return scene_->doubles_->at(triangle.ref & KDRAY_REF_INDEX_MASK);
+  }
+
+  bool is_between(double t, bool from_start) const {
+    return (t > ray_->t_min || (from_start && t == 0 && ray_->t_min == 0)) && t < ray_->t_max;
+  }
+
+  // Whether the line crosses a triangle; bounds its t.
+  bool hits(Candidate& candidate, bool from_start) const {
+    const Corners corners = corners_of(candidate);
+    candidate.t = bounds_of_t(corners);
+    if (candidate.t.most < ray_->t_min || candidate.t.least > end_ || !crosses(corners)) return false;
+    if (candidate.t.least > ray_->t_min && candidate.t.most < ray_->t_max) return true;
+    return is_between(settle(candidate), from_start);
+  }
+
+  primitives::Crossings crossings_of_shape(std::uint32_t ref) const {
+    const DoubleLine& line = ray_->line;
+    return primitives::with_kind(ref >> KDRAY_REF_KIND_SHIFT, [&](auto kind) -> primitives::Crossings {
+      if constexpr (decltype(kind)::kIsShape)
+        return primitives::crossings({line.origin, line.direction, line.rest, ray_->t_min, end_},
+                                     decltype(kind)::of(*scene_->doubles_)[ref & KDRAY_REF_INDEX_MASK]);
+      return {};
+    });
+  }
+
+  // Whether a shape is one of the last ones: it lies in several leaves, and its crossings take long to find.
+  bool was_asked(std::uint32_t ref) {
+    if (std::ranges::find(asked_, ref) != asked_.end()) return true;
+    asked_[next_asked_++ % asked_.size()] = ref;
+    return false;
+  }
+
+  // Returns a triangle's t.
   double settle(Candidate& candidate) const {
-    const double t = t_of(scene_->doubles_->at(candidate.triangle));
+    const double t = t_of(corners_of(candidate));
     candidate.t = around(t);
     return t;
   }
@@ -109,20 +193,21 @@ class DoubleScene::Line : public ExactLine {
   const DoubleScene* scene_;
   const DoubleRay* ray_;
   double end_;
+  std::array<std::uint32_t, 8> asked_{};  // 0 is a triangle's reference
+  std::size_t next_asked_ = 0;
 };
 
 // What line i hits is found(i, line, candidate), once for each leaf that it lies in: whether it goes on.
 template <class Found>
-class DoubleScene::Decider final : public TriangleDecider {
+class DoubleScene::RayDecider final : public Decider {
  public:
-  Decider(const DoubleScene& scene, std::span<const Question> questions, std::span<Line> lines,
-          bool from_start, const Found& found)
+  RayDecider(const DoubleScene& scene, std::span<const Question> questions, std::span<Line> lines,
+             bool from_start, const Found& found)
       : scene_(scene), questions_(questions), lines_(lines), from_start_(from_start), found_(found) {}
 
-  float decide(std::size_t i, std::uint32_t triangle) override {
-    Candidate candidate{triangle, {}};
-    if (scene_.is_seen(triangle, questions_[i].mask) && lines_[i].hits(candidate, from_start_) &&
-        !found_(i, lines_[i], candidate))
+  float decide(std::size_t i, std::uint32_t ref) override {
+    const auto take = [&](const Candidate& candidate) { return found_(i, lines_[i], candidate); };
+    if (scene_.is_seen(ref, questions_[i].mask) && !lines_[i].visit_hits(ref, from_start_, take))
       return -HUGE_VALF;
     return lines_[i].end_in_floats();
   }
@@ -144,17 +229,35 @@ std::vector<DoubleScene::Line> DoubleScene::walk(std::span<const Question> quest
   in_floats.reserve(questions.size());
   for (const Question& question : questions)
     in_floats.push_back(lines.emplace_back(*this, question).in_floats());
-  Decider decider(*this, questions, lines, from_start, found);
-  walk_triangles(scene_->wide, *doubles_, in_floats, decider);
+  RayDecider decider(*this, questions, lines, from_start, found);
+  walk_primitives(scene_->wide, *doubles_, in_floats, decider);
   return lines;
 }
 
-std::uint32_t DoubleScene::number_of(std::uint32_t triangle) const {
-  return query::number_of(scene_->flat, ref_of(triangle));
+std::uint32_t DoubleScene::number_of(std::uint32_t ref) const {
+  return query::number_of(scene_->flat, ref);
 }
 
-bool DoubleScene::is_seen(std::uint32_t triangle, std::uint32_t mask) const {
-  return has_every_bit_ ? mask != 0 : (table_->mask_of(number_of(triangle)) & mask) != 0;
+bool DoubleScene::is_seen(std::uint32_t ref, std::uint32_t mask) const {
+  return has_every_bit_ ? mask != 0 : (table_->mask_of(number_of(ref)) & mask) != 0;
+}
+
+template <class QuestionOf, class CandidateOf, class Told>
+void DoubleScene::tell_candidates(std::size_t n, const QuestionOf& question, const CandidateOf& candidate,
+                                  const Told& told) const {
+  std::vector<std::size_t> triangles;
+  triangles.reserve(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Candidate& c = candidate(i);
+    if (is_triangle(c.ref))
+      triangles.push_back(i);
+    else
+      told(i, ExactHit{question(i).ray.line.caller_t(c.t.least), c.u, 0, c.ref, kNoInstance});
+  }
+  tell(
+      triangles.size(), [&](std::size_t k) { return question(triangles[k]).ray.line; },
+      [&](std::size_t k) { return candidate(triangles[k]).ref & KDRAY_REF_INDEX_MASK; },
+      [&](std::size_t k, const ExactHit& hit) { told(triangles[k], hit); });
 }
 
 void DoubleScene::closest(std::span<const Question> questions,
@@ -170,9 +273,9 @@ void DoubleScene::closest(std::span<const Question> questions,
   std::vector<std::size_t> hit;
   for (std::size_t i = 0; i < lines.size(); ++i)
     if (best[i]) hit.push_back(i);
-  tell(
-      hit.size(), [&](std::size_t k) { return questions[hit[k]].ray.line; },
-      [&](std::size_t k) { return best[hit[k]]->triangle; },
+  tell_candidates(
+      hit.size(), [&](std::size_t k) -> const Question& { return questions[hit[k]]; },
+      [&](std::size_t k) -> const Candidate& { return *best[hit[k]]; },
       [&](std::size_t k, const ExactHit& told) { hits[questions[hit[k]].place] = told; });
 }
 
@@ -183,13 +286,13 @@ void DoubleScene::any(std::span<const Question> questions, std::span<std::uint8_
   });
 }
 
-// Calls collected(i, line, candidates) for the lines that hit any, each triangle once.
+// Calls collected(i, line, candidates) for the lines that hit any, each hit once.
 template <class Collected>
 void DoubleScene::collect(std::span<const Question> questions, const Collected& collected) const {
   struct Of {
     std::size_t line;
     Candidate candidate;
-    auto key() const { return std::pair(line, candidate.triangle); }
+    auto key() const { return std::pair(line, candidate.key()); }
   };
   std::vector<Of> found;
   const std::vector<Line> lines =
@@ -216,13 +319,12 @@ void DoubleScene::count(std::span<const Question> questions, std::span<std::uint
 
 void DoubleScene::all(std::span<const Question> questions, std::span<std::vector<ExactHit>> hits) const {
   collect(questions, [&](std::size_t i, const Line& line, std::vector<Candidate>& candidates) {
-    std::sort(candidates.begin(), candidates.end(),
-              [&](const Candidate& a, const Candidate& b) { return line.precedes(a, b); });
+    line.sort(candidates);
     std::vector<ExactHit>& told = hits[questions[i].place];
     told.resize(candidates.size());
-    tell(
-        told.size(), [&](std::size_t) { return questions[i].ray.line; },
-        [&](std::size_t k) { return candidates[k].triangle; },
+    tell_candidates(
+        told.size(), [&](std::size_t) -> const Question& { return questions[i]; },
+        [&](std::size_t k) -> const Candidate& { return candidates[k]; },
         [&](std::size_t k, const ExactHit& hit) { told[k] = hit; });
   });
 }
@@ -323,30 +425,19 @@ std::optional<DoubleScene::Nearest> DoubleScene::nearest(const dvec3& place, dou
     bool operator<(const Entry& other) const { return square > other.square; }
   };
   std::optional<Nearest> best;
-  double square = most * most, within = most;
+  double square = most * most;
   if (scene_->wide.nodes.size() == 0) return best;
   // Squares of floats are off by some 4u; the boxes' margin is in them.
   constexpr double kFloats = 1 - 0x1p-20;
-  std::vector<Entry> heap{{0, 0}};
-  while (!heap.empty()) {
-    std::pop_heap(heap.begin(), heap.end());
-    const Entry entry = heap.back();
-    heap.pop_back();
-    if (entry.square * kFloats > square) break;
-    if (!(entry.child & KDRAY_WIDE_LEAF)) {
-      const WideNode& node = scene_->wide.nodes[entry.child];
-      float squares[8];
-      squares_to_boxes(node, place, margin_, squares);
-      for (std::size_t slot = 0; slot < 8; ++slot) {
-        const bool is_there = node.bounds[0][0][slot] <= node.bounds[0][1][slot];
-        if (!is_there || squares[slot] * kFloats > square) continue;
-        heap.push_back({squares[slot], node.child[slot]});
-        std::push_heap(heap.begin(), heap.end());
-      }
-      continue;
-    }
+  const auto take = [&](double near_square, const Nearest& near) {
+    if (!(near_square <= square) || near.distance > most) return;
+    if (best && near_square == square && number_of(near.ref) >= number_of(best->ref)) return;
+    square = near_square;
+    best = near;
+  };
+  const auto look_at_triangles = [&](std::uint32_t leaf) {
     const auto block = static_cast<std::size_t>(scene_->wide.block);
-    visit_blocks(scene_->wide, entry.child, [&](const layout::u32* rows, std::size_t n) {
+    visit_blocks(scene_->wide, leaf, [&](const layout::u32* rows, std::size_t n) {
       std::uint32_t lanes = triangles_within(rounded_up(square / kFloats), rows, block, place, margin_);
       for (lanes &= (2u << (n - 1)) - 1; lanes != 0; lanes &= lanes - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
@@ -354,17 +445,40 @@ std::optional<DoubleScene::Nearest> DoubleScene::nearest(const dvec3& place, dou
         ExactLine::Corners corners = doubles_->at(triangle);
         for (dvec3& corner : corners) corner -= place;
         const NearPoint near = near_of(corners);
-        if (!(near.square <= square)) continue;
-        const std::uint32_t ref = ref_of(triangle);
-        const double distance = std::sqrt(near.square);
-        if (best && near.square == square && number_of(triangle) >= query::number_of(scene_->flat, best->ref))
-          continue;
-        if (distance > within) continue;
-        square = near.square;
-        best = Nearest{distance, near.point + place, ref, near.u, near.v};
+        take(near.square, {std::sqrt(near.square), near.point + place, ref_of(triangle), near.u, near.v});
       }
       return true;
     });
+  };
+  const auto look_at_shapes = [&](std::uint32_t leaf) {
+    visit_leaf(scene_->wide, leaf, [&](auto kind, std::uint32_t index, const layout::u32*) {
+      if constexpr (decltype(kind)::kIsShape) {
+        const auto [distance, point] = primitives::nearest_on(decltype(kind)::of(*doubles_)[index], place);
+        take(distance * distance, {distance, point, kind.kNumber << KDRAY_REF_KIND_SHIFT | index, 0, 0});
+      }
+      return false;
+    });
+  };
+  std::vector<Entry> heap{{0, 0}};
+  while (!heap.empty()) {
+    std::pop_heap(heap.begin(), heap.end());
+    const Entry entry = heap.back();
+    heap.pop_back();
+    if (entry.square * kFloats > square) break;
+    if (entry.child & KDRAY_WIDE_LEAF) {
+      flatten::leaf_kind(entry.child) == KDRAY_KIND_TRIANGLE ? look_at_triangles(entry.child)
+                                                             : look_at_shapes(entry.child);
+      continue;
+    }
+    const WideNode& node = scene_->wide.nodes[entry.child];
+    float squares[8];
+    squares_to_boxes(node, place, margin_, squares);
+    for (std::size_t slot = 0; slot < 8; ++slot) {
+      const bool is_there = node.bounds[0][0][slot] <= node.bounds[0][1][slot];
+      if (!is_there || squares[slot] * kFloats > square) continue;
+      heap.push_back({squares[slot], node.child[slot]});
+      std::push_heap(heap.begin(), heap.end());
+    }
   }
   return best;
 }

@@ -5,14 +5,17 @@
 //         Which triangles a line crosses goes by the half-open rule with exact signs (exact_triangle.h), for
 //         closest hits too: of what shares an edge one is hit. Which of two comes first is decided exactly;
 //         at one t it is the one with the lower number. t is bounded first, and found to its last place for
-//         what is told and where bounds overlap.
+//         what is told and where bounds overlap. Shapes are crossed in pairs of doubles
+//         (primitives/shape_tools.h), and come before or after others by t to 2^-96 of itself, in one place
+//         after triangles.
 // Errors  t is the double nearest to the exact one, nearly always, and off by less than two of its last
 //         places. It is compared with t_min and t_max as such; its sign is exact. Distances of points are off
-//         by some 2^-50 of themselves.
+//         by some 2^-50 of themselves, to shapes of the coordinates.
 // Why     Boxes: a vertex is off by u of the scene's reach W in floats, so that what a triangle's floats have
 //         in a cell its doubles have within u*W, and the boxes of pieces are off by some u*W more
 //         (kdtree/clip.h). A walk's floats lose 4u of the lengths in play, |o| + 2W. The margin is 64u*W and
-//         32u*|o|.
+//         32u*|o|. Shapes' centres, radii and directions are off by 5u*W together; a cone whose ends lie
+//         close together is tilted by more, which is added (DoubleGeometry::apart).
 // Threads As many calls at once as there are threads.
 #pragma once
 
@@ -32,8 +35,8 @@ namespace kdray::query {
 
 class DoubleScene {
  public:
-  // Of a scene that has doubles; `table` tells masks.
-  DoubleScene(const prepare::Prepared& scene, const GeometryTable& table);
+  // Of a scene that has doubles; `table` tells masks, which mean nothing without one.
+  explicit DoubleScene(const prepare::Prepared& scene, const GeometryTable* table = nullptr);
 
   struct Question {
     DoubleRay ray;
@@ -65,18 +68,23 @@ class DoubleScene {
   struct Candidate;
   class Line;
   template <class Found>
-  class Decider;
-  std::uint32_t number_of(std::uint32_t triangle) const;
-  bool is_seen(std::uint32_t triangle, std::uint32_t mask) const;
+  class RayDecider;
+  std::uint32_t number_of(std::uint32_t ref) const;
+  bool is_seen(std::uint32_t ref, std::uint32_t mask) const;
   template <class Found>
   std::vector<Line> walk(std::span<const Question> questions, bool from_start, const Found& found) const;
   template <class Collected>
   void collect(std::span<const Question> questions, const Collected& collected) const;
+  // Calls told(i, hit) for each of n candidates, whose questions are question(i).
+  template <class QuestionOf, class CandidateOf, class Told>
+  void tell_candidates(std::size_t n, const QuestionOf& question, const CandidateOf& candidate,
+                       const Told& told) const;
 
   static ExactLine exact(const DoubleLine& line) { return {line.origin, line.direction, line.rest}; }
   static std::uint32_t ref_of(std::uint32_t triangle) {
     return std::uint32_t{KDRAY_KIND_TRIANGLE} << KDRAY_REF_KIND_SHIFT | triangle;
   }
+  static bool is_triangle(std::uint32_t ref) { return ref >> KDRAY_REF_KIND_SHIFT == KDRAY_KIND_TRIANGLE; }
   // Fetches the corners' numbers of triangle i, or its vertices, where there is one. (Inlined: g++ takes a
   // function that does nothing else for one without effect, and leaves out calls of it.)
   [[gnu::always_inline]] void fetch_corners(std::size_t i, std::size_t n, const auto& triangle) const {
@@ -89,7 +97,7 @@ class DoubleScene {
   }
 
   const prepare::Prepared* scene_;
-  const scene::DoubleTriangles* doubles_;
+  const scene::DoubleGeometry* doubles_;
   const GeometryTable* table_;
   double reach_, margin_;
   bool has_every_bit_;  // in all of the table's masks

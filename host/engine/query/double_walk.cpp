@@ -13,7 +13,9 @@
 #include <vector>
 
 #include "base/local_space.h"
+#include "engine/query/wide_boxes.h"
 #include "hwy/highway.h"
+#include "layout/tree.layout.h"
 #include "layout/wide.layout.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -41,8 +43,8 @@ inline void fetch(const void* begin, std::size_t bytes) {
 
 struct Scene {
   const flatten::WideForm& wide;
-  const scene::DoubleTriangles& doubles;
-  TriangleDecider& decider;
+  const scene::DoubleGeometry& doubles;
+  Decider& decider;
 };
 
 // A line in flight. kBlock: primitives to a block.
@@ -71,11 +73,13 @@ class Walk {
     while (top_ != bottom_) {
       const Entry entry = *--top_;
       if (entry.enter > end_) continue;
-      if (entry.child & KDRAY_WIDE_LEAF) {
+      if (!(entry.child & KDRAY_WIDE_LEAF)) {
+        open(entry.child);
+      } else if (is_of_triangles(entry.child)) {
         rows_ = rows_of(entry.child);
         test();
-      } else {
-        open(entry.child);
+      } else if (!decide_shapes(entry.child)) {
+        return false;
       }
       return true;
     }
@@ -116,10 +120,20 @@ class Walk {
       top_ = top;
     }
     const u32 next = top_[-1].child;
-    if (next & KDRAY_WIDE_LEAF)
-      fetch(rows_of(next), kRows * kBlock * sizeof(u32));
-    else
+    if (!(next & KDRAY_WIDE_LEAF))
       fetch(&scene_->wide.nodes[next], sizeof(layout::WideNode));
+    else if (is_of_triangles(next))
+      fetch(rows_of(next), kRows * kBlock * sizeof(u32));
+  }
+
+  static bool is_of_triangles(u32 leaf) { return flatten::leaf_kind(leaf) == KDRAY_KIND_TRIANGLE; }
+
+  // Whether the line goes on.
+  bool decide_shapes(u32 leaf) {
+    return !visit_leaf(scene_->wide, leaf, [&](auto kind, u32 index, const u32*) {
+      end_ = scene_->decider.decide(number_, kind.kNumber << KDRAY_REF_KIND_SHIFT | index);
+      return end_ < line_->begin;
+    });
   }
 
   HWY_ATTR const u32* rows_of(u32 leaf) const {
@@ -154,6 +168,7 @@ class Walk {
       });
     }
     const bool goes_on = for_each_undecided([&](u32 triangle) {
+      static_assert(KDRAY_KIND_TRIANGLE == 0);  // its number is the reference
       end_ = scene_->decider.decide(number_, triangle);
       return end_ >= line_->begin;
     });
@@ -236,8 +251,8 @@ HWY_ATTR void walk_all(const Scene& scene, std::span<const LineInFloats> lines) 
     }
 }
 
-HWY_ATTR void WalkTriangles(const flatten::WideForm& wide, const scene::DoubleTriangles& doubles,
-                            std::span<const LineInFloats> lines, TriangleDecider& decider) {
+HWY_ATTR void WalkPrimitives(const flatten::WideForm& wide, const scene::DoubleGeometry& doubles,
+                             std::span<const LineInFloats> lines, Decider& decider) {
   const Scene scene{wide, doubles, decider};
   wide.block == 8 ? walk_all<8>(scene, lines) : walk_all<4>(scene, lines);
 }
@@ -248,7 +263,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace kdray::query {
 
-HWY_EXPORT(WalkTriangles);
+HWY_EXPORT(WalkPrimitives);
 
 LineInFloats::LineInFloats(const dvec3& from, const dvec3& direction, float margin, double reach)
     : begin(0), end(0), octant(0) {
@@ -269,10 +284,10 @@ LineInFloats::LineInFloats(const dvec3& from, const dvec3& direction, float marg
                                  (2 * reach + largest_component(dvec3(origin[0], origin[1], origin[2]))));
 }
 
-void walk_triangles(const flatten::WideForm& wide, const scene::DoubleTriangles& doubles,
-                    std::span<const LineInFloats> lines, TriangleDecider& decider) {
+void walk_primitives(const flatten::WideForm& wide, const scene::DoubleGeometry& doubles,
+                     std::span<const LineInFloats> lines, Decider& decider) {
   if (wide.nodes.size() == 0) return;
-  HWY_DYNAMIC_DISPATCH(WalkTriangles)(wide, doubles, lines, decider);
+  HWY_DYNAMIC_DISPATCH(WalkPrimitives)(wide, doubles, lines, decider);
 }
 
 }  // namespace kdray::query

@@ -1,7 +1,9 @@
-// What    Lines' ways through the wide tree of a scene of doubles, in floats: which triangles they may cross.
+// What    Lines' ways through the wide tree of a scene of doubles, in floats: which primitives they may
+//         cross.
 // Shape   Eight boxes of a node, or the triangles of a block, at a time, in the CPU's widest vectors
 //         (Highway). Each triangle that is passed by is one that no half-line of doubles which these floats
-//         are of crosses between `begin` and `end`; the rest is the decider's. Some lines are in flight at
+//         are of crosses between `begin` and `end`; the rest is the decider's, as are the shapes of all
+//         leaves that a line comes to. Some lines are in flight at
 //         once, each a step at a time, so that what one needs next is fetched while the others take theirs.
 // Why     Boxes: see double_scene.h. Triangles: a corner's place in the plane across the line, sheared, is
 //         off by 16u of what the largest of its lengths can be: 2u for the rounding of vertex and origin,
@@ -34,17 +36,18 @@ struct LineInFloats {
   float displaced;  // how far a corner may be off
 };
 
-class TriangleDecider {
+class Decider {
  public:
-  // How far the line of this number goes on; what is below its `begin` ends it.
-  virtual float decide(std::size_t line, std::uint32_t triangle) = 0;
+  // How far the line of this number goes on, once it has come to a primitive (tree.layout.h); what is below
+  // its `begin` ends it.
+  virtual float decide(std::size_t line, std::uint32_t ref) = 0;
 
  protected:
-  ~TriangleDecider() = default;
+  ~Decider() = default;
 };
 
 // Also fetches the doubles of triangles that are to be decided about.
-void walk_triangles(const flatten::WideForm& wide, const scene::DoubleTriangles& doubles,
-                    std::span<const LineInFloats> lines, TriangleDecider& decider);
+void walk_primitives(const flatten::WideForm& wide, const scene::DoubleGeometry& doubles,
+                     std::span<const LineInFloats> lines, Decider& decider);
 
 }  // namespace kdray::query

@@ -137,28 +137,6 @@ ExactScene::ExactScene(const prepare::Prepared& scene)
       margin_(scene.wide.widen * (kConesBeyondBoxes + kFloatsUnsure) * 2 * world_max(scene.geometry.bounds)) {
 }
 
-// Calls visit(kind, index, its words) for each primitive until one call answers true; whether one did.
-template <class Visit>
-bool ExactScene::visit_leaf(std::uint32_t leaf, const Visit& visit) const {
-  return primitives::with_kind(flatten::leaf_kind(leaf), [&](auto kind) {
-    using Kind = decltype(kind);
-    const std::size_t block = block_size();
-    const layout::u32* rows = Kind::blocks_of(scene_->wide).data() +
-                              (leaf & KDRAY_WIDE_FIRST_MASK) * std::size_t{Kind::kRows} * block;
-    for (;; rows += Kind::kRows * block)
-      for (std::size_t i = 0; i < block; ++i) {
-        const layout::u32 index = rows[(Kind::kRows - 1) * block + i];
-        if (visit(kind, index & ~KDRAY_WIDE_LAST, rows + i)) return true;
-        if (index & KDRAY_WIDE_LAST) return false;
-      }
-  });
-}
-
-// Of a triangle whose words begin at `rows`.
-ExactLine::Corners ExactScene::corners_of(std::uint32_t index, const layout::u32* rows) const {
-  return scene_->doubles ? scene_->doubles->at(index) : corners_at(rows, block_size());
-}
-
 bool ExactScene::is_near(const dvec3& place) const {
   if (scene_->wide.nodes.size() == 0) return false;
   return is_near(0, place, margin_ + kNear, kNear);
@@ -166,18 +144,19 @@ bool ExactScene::is_near(const dvec3& place) const {
 
 bool ExactScene::is_near(std::uint32_t index, const dvec3& place, double margin, double within) const {
   const WideNode& node = scene_->wide.nodes[index];
+  const auto block = static_cast<std::size_t>(scene_->wide.block);
   for (std::uint32_t slots = holding(node, place, widened(margin, place)); slots != 0; slots &= slots - 1) {
     const std::uint32_t child = node.child[std::countr_zero(slots)];
     if (!(child & KDRAY_WIDE_LEAF)) {
       if (is_near(child, place, margin, within)) return true;
     } else if (is_instance(child)) {
       if (is_near_instance(scene_->flat.instances[child & KDRAY_WIDE_FIRST_MASK], place)) return true;
-    } else if (visit_leaf(child, [&](auto kind, std::uint32_t i, const layout::u32* rows) {
+    } else if (visit_leaf(scene_->wide, child, [&](auto kind, std::uint32_t i, const layout::u32* rows) {
                  using Kind = decltype(kind);
                  if constexpr (Kind::kIsShape)
                    return primitives::distance_to(Kind::of(scene_->flat)[i], place) <= within;
                  else
-                   return is_within(within, corners_of(i, rows), place);
+                   return is_within(within, corners_at(rows, block), place);
                })) {
       return true;
     }
@@ -206,6 +185,7 @@ bool ExactScene::is_near_instance(const layout::Instance& instance, const dvec3&
 
 void ExactScene::cross(std::uint32_t index, const Walk& walk) const {
   const WideNode& node = scene_->wide.nodes[index];
+  const auto block = static_cast<std::size_t>(scene_->wide.block);
   for (std::uint32_t slots = walk.slots_of(node); slots != 0; slots &= slots - 1) {
     const std::uint32_t child = node.child[std::countr_zero(slots)];
     if (!(child & KDRAY_WIDE_LEAF)) {
@@ -220,14 +200,14 @@ void ExactScene::cross(std::uint32_t index, const Walk& walk) const {
       inside.exponent = line.exponent;
       cross(instance.root, inside);
     } else {
-      visit_leaf(child, [&](auto kind, std::uint32_t i, const layout::u32* rows) {
+      visit_leaf(scene_->wide, child, [&](auto kind, std::uint32_t i, const layout::u32* rows) {
         using Kind = decltype(kind);
         const std::uint32_t ref = Kind::kNumber << KDRAY_REF_KIND_SHIFT | i;
         if constexpr (Kind::kIsShape) {
           for (const auto& at :
                primitives::crossings({walk.line.origin(), walk.line.direction()}, Kind::of(scene_->flat)[i]))
             walk.add(at.t, at.u, 0, ref);
-        } else if (const auto at = walk.line.crossing(corners_of(i, rows))) {
+        } else if (const auto at = walk.line.crossing(corners_at(rows, block))) {
           walk.add(at->t, at->u, at->v, ref);
         }
         return false;

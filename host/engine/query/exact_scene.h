@@ -1,5 +1,5 @@
-// What    Rays of doubles against a scene's primitives, in double on the host: for those that begin so near
-//         to a surface that the kernels' floats can't tell on which side of it they are.
+// What    Rays of doubles against the primitives of a scene of floats, in double on the host: for those that
+//         begin so near to a surface that the kernels' floats can't tell on which side of it they are.
 // Shape   Everything in the scene's own space. A line crosses triangles by exact signs (exact_triangle.h),
 //         shapes as primitives/shape_tools.h says; of an instance in its mesh's space, to which the line is
 //         moved once for all of its primitives.
@@ -54,10 +54,6 @@ class ExactScene {
   bool is_near_instance(const layout::Instance& instance, const dvec3& place) const;
   void cross(std::uint32_t node, const Walk& walk) const;
   double distance_in_mesh(const primitives::Line& line, std::uint32_t ref, double t) const;
-  std::size_t block_size() const { return static_cast<std::size_t>(scene_->wide.block); }
-  ExactLine::Corners corners_of(std::uint32_t index, const layout::u32* rows) const;
-  template <class Visit>
-  bool visit_leaf(std::uint32_t leaf, const Visit& visit) const;
 
   const prepare::Prepared* scene_;
   double margin_;  // by which boxes are widened for rays

@@ -113,13 +113,13 @@ double rounded(const Expansion<kCapacity>& parts) {
   return sum;
 }
 
-// To the nearest double, but for 2^-50 of its last place.
-double quotient(const Expansion<48>& a, const Expansion<48>& b) {
+// The high part is the nearest double, but for 2^-50 of its last place.
+Pair quotient(const Expansion<48>& a, const Expansion<48>& b) {
   const double divisor = rounded(b), about = rounded(a) / divisor;
   Expansion<144> left;
   for (const double part : a) left.add(part);
   left.add_product(b, -about);
-  return about + rounded(left) / divisor;
+  return exact_sum(about, rounded(left) / divisor);
 }
 
 }  // namespace
@@ -231,7 +231,7 @@ bool ExactLine::crosses(const Corners& v) const {
 }
 
 // A triangle that the line crosses isn't seen edge-on, so that what is divided by is not 0.
-double ExactLine::t_of(const Corners& v) const {
+Pair ExactLine::t_in_pair(const Corners& v) const {
   const ExactQuotient t(v, origin_, rest_, direction_);
   return quotient(compressed(t.volume), compressed(t.facing));
 }

@@ -14,6 +14,7 @@
 #include <array>
 #include <optional>
 
+#include "base/pair.h"
 #include "base/vec.h"
 
 namespace kdray::query {
@@ -43,7 +44,8 @@ class ExactLine {
   static Bounds around(double t);  // the exact t, of what t_of tells
   // Of a triangle that it crosses: t, slowly, and the sign of t less that of another such triangle. (Faster,
   // and weights: double_hits.h.)
-  double t_of(const Corners& corners) const;
+  double t_of(const Corners& corners) const { return double(t_in_pair(corners)); }
+  Pair t_in_pair(const Corners& corners) const;  // off by 2^-100 of itself
   int compare_t(const Corners& corners, const Corners& others) const;
 
  private:

@@ -1,7 +1,7 @@
 // What    Which geometry a primitive belongs to: numbers in file order -> a geometry's id, and the
 //         primitive's place in it.
 // Shape   Geometries have their numbers in a row, in the order of the table. Primitives of instances have the
-//         numbers of their prototypes, or, where instances are copies (scene::DoubleTriangles), numbers of
+//         numbers of their prototypes, or, where instances are copies (scene::DoubleGeometry), numbers of
 //         their own behind all others.
 #pragma once
 

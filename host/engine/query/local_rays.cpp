@@ -47,7 +47,7 @@ RayArrays::RayArrays(const Rays& rays)
   check_size(rays.masks.size(), n_, "masks");
 }
 
-LocalFrame::LocalFrame(const scene::Geometry& geometry)
+LocalFrame::LocalFrame(const scene::Geometry& geometry, double apart)
     : space_(geometry.space),
       lo_(0),
       hi_(0),
@@ -56,9 +56,9 @@ LocalFrame::LocalFrame(const scene::Geometry& geometry)
       near_(2 * kLocalReach) {
   if (geometry.bounds.empty()) return;
   // By more than a ray may be off for being rounded to float.
-  constexpr double kWider = 0x1p-12 * kLocalReach;
-  lo_ = dvec3(geometry.bounds.lo) - kWider;
-  hi_ = dvec3(geometry.bounds.hi) + kWider;
+  const double wider = 0x1p-12 * kLocalReach + apart;
+  lo_ = dvec3(geometry.bounds.lo) - wider;
+  hi_ = dvec3(geometry.bounds.hi) + wider;
 }
 
 // Where the line enters the bounds, in multiples of the direction; infinity: it passes them by.

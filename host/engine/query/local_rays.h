@@ -76,7 +76,7 @@ inline dvec3 lost_of(const dvec3& a, const dvec3& b, const dvec3& difference) {
 }
 
 // A line in the space of a scene of doubles: exactly origin + rest + t*direction. t is 2^-exponent times the
-// caller's. In a DoubleRay components below DoubleTriangles::kLeast are 0.
+// caller's. In a DoubleRay components below DoubleGeometry::kLeast are 0.
 struct DoubleLine {
   dvec3 origin, rest, direction;
   int exponent;
@@ -91,7 +91,7 @@ struct DoubleLine {
   void drop_tiny() {
     for (dvec3* v : {&origin, &rest, &direction})
       for (int k = 0; k < 3; ++k)
-        if (std::abs((*v)[k]) < scene::DoubleTriangles::kLeast) (*v)[k] = 0;
+        if (std::abs((*v)[k]) < scene::DoubleGeometry::kLeast) (*v)[k] = 0;
   }
 };
 
@@ -128,7 +128,8 @@ struct LocalLine {
 
 class LocalFrame {
  public:
-  explicit LocalFrame(const scene::Geometry& geometry);  // its space and bounds
+  // Of its space and bounds, which what lies in it may leave by `apart`.
+  explicit LocalFrame(const scene::Geometry& geometry, double apart = 0);
 
   // None where it passes the bounds by, or stays too far from them for floats.
   std::optional<LocalLine> line(const dvec3& origin, const dvec3& direction, bool in_double) const;

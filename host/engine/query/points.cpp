@@ -93,24 +93,45 @@ std::vector<std::uint32_t> crossings_above(const QueryContext& context, Place& p
   return counts;
 }
 
+// The same in a scene of doubles: of what the filter leaves in doubt, or of all, the host counts.
+std::vector<std::uint32_t> crossings_above_in_doubles(const QueryContext& context, Place& place,
+                                                      std::span<const dvec3> points,
+                                                      const std::optional<Cancel>& cancel) {
+  std::vector<std::uint32_t> counts(points.size(), kInDoubtCount);
+  if (place.target.filters) counts = crossings_above(context, place, points, cancel);
+  const DoubleScene scene(context.scene());
+  const dvec3 up(kUp[0], kUp[1], kUp[2]);
+  for_each_slow_grain(points.size(), cancel, [&](std::size_t begin, std::size_t end) {
+    std::vector<DoubleScene::Question> in_doubt;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (counts[i] != kInDoubtCount) continue;
+      counts[i] = 0;
+      if (context.frame.is_outside(context.frame.space().local(points[i]))) continue;
+      if (const auto ray = context.frame.double_ray(points[i], up, 0, kInfinity))
+        in_doubt.push_back({*ray, ~0u, i});
+    }
+    scene.count(in_doubt, counts);
+  });
+  return counts;
+}
+
 // Whether each point has an odd number of surfaces above it: it is inside of closed ones. Points of doubles
-// so near to a surface that floats can't tell are looked at in double; in a scene of doubles those of which
-// the filter can't.
+// so near to a surface that floats can't tell are looked at in double.
 std::vector<std::uint8_t> are_inside(const QueryContext& context, Place& place, std::span<const dvec3> points,
                                      bool in_double, const std::optional<Cancel>& cancel) {
-  const std::vector<std::uint32_t> counts = crossings_above(context, place, points, cancel);
+  const bool of_doubles = context.scene().doubles != nullptr;
+  const std::vector<std::uint32_t> counts = of_doubles
+                                                ? crossings_above_in_doubles(context, place, points, cancel)
+                                                : crossings_above(context, place, points, cancel);
   std::vector<std::uint8_t> inside(points.size());
   for_each_index(points.size(), [&](std::size_t i) { inside[i] = counts[i] % 2; });
-  if (!in_double && !context.scene().doubles) return inside;
+  if (!in_double || of_doubles) return inside;
   const ExactScene exact(context.scene());
-  const auto is_in_doubt = [&](std::size_t i, const dvec3& local) {
-    return place.target.filters ? counts[i] == kInDoubtCount : exact.is_near(local);
-  };
   for_each_slow_grain(points.size(), cancel, [&](std::size_t begin, std::size_t end) {
     std::vector<ExactHit> hits;
     for (std::size_t i = begin; i < end; ++i) {
       const dvec3 local = context.frame.space().local(points[i]);
-      if (context.frame.is_outside(local) || !is_in_doubt(i, local)) continue;
+      if (context.frame.is_outside(local) || !exact.is_near(local)) continue;
       exact.cross(local, dvec3(kUp[0], kUp[1], kUp[2]), hits);
       inside[i] = hits.size() % 2;
     }
@@ -145,7 +166,7 @@ class Nearest {
 
  private:
   void look_up_doubles(const QueryContext& context, std::span<const dvec3> points, double radius) {
-    const DoubleScene scene(context.scene(), context.table);
+    const DoubleScene scene(context.scene());
     const LocalSpace& space = context.frame.space();
     const Places places{space};
     // Many are looked up one near the other, for the caches.

@@ -81,6 +81,18 @@ Surface surface_at(const flatten::FlatScene& scene, std::uint32_t ref, const Poi
   });
 }
 
+// Of a hit in a scene of doubles, in whose own space the point is.
+template <class PointOf>
+dvec3 normal_in_doubles(const scene::DoubleGeometry& doubles, std::uint32_t ref, const PointOf& point_of) {
+  return primitives::with_kind(ref >> KDRAY_REF_KIND_SHIFT, [&](auto kind) {
+    const std::uint32_t index = ref & KDRAY_REF_INDEX_MASK;
+    if constexpr (decltype(kind)::kIsShape)
+      return primitives::normal_at(decltype(kind)::of(doubles)[index], point_of());
+    else
+      return normal_of(doubles.at(index));
+  });
+}
+
 // row * v
 inline dvec3 by_rows(const float (&rows)[3][3], const dvec3& v) {
   const auto row = [&](int i) { return glm::dot(dvec3(rows[i][0], rows[i][1], rows[i][2]), v); };

@@ -55,10 +55,10 @@ struct LoadOptions {
 // reference for float's rounding: slower, by the binary walk and PDPRT alone, on devices that have it.
 enum class Precision { float32, float64 };
 
-// What vertices are to queries. float64: they are as they were given, in doubles, which are kept beside the
-// floats of the scene, and answers are those of exact arithmetic (slower). For triangles alone; instances
-// become copies. Pictures are of the floats. automatic: float64 for triangles without instances of which
-// floats about the scene's centre lose a bit, else float32.
+// What vertices and shapes are to queries. float64: they are as they were given, in doubles, which are kept
+// beside the floats of the scene, and answers are those of exact arithmetic, with shapes to 2^-96 of their
+// size (slower). Instances become copies. Pictures are of the floats. automatic: float64 for triangles alone,
+// without instances, of which floats about the scene's centre lose a bit, else float32.
 enum class VertexPrecision { float32, float64, automatic };
 
 struct TreeOptions {

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -214,7 +216,9 @@ class Maker {
     auto& kept = Kind::of(out_);
     kept.reserve(shapes.size());
     for (std::uint32_t i = 0; i < shapes.size(); ++i) {
-      const typename Kind::Geometry shape = geometry_of(shapes[i], out_.space, i);
+      typename Kind::Geometry shape = geometry_of(shapes[i], out_.space, i);
+      if constexpr (requires { keep_height(shape, shapes[i]); })
+        if (for_doubles_) keep_height(shape, shapes[i]);
       if (!primitives::has_area(shape)) {
         ++out_.dropped_degenerate;
         ++out_.lost;  // the file's have a radius, and a height
@@ -258,19 +262,60 @@ bool fits_floats(const Scene& scene, const LocalSpace& space) {
   });
 }
 
-DoubleTriangles make_double_triangles(const Scene& scene, const Geometry& geometry) {
-  DoubleTriangles made;
+namespace {
+
+dvec3 local_in_doubles(const LocalSpace& space, const dvec3& world) {
+  dvec3 local = space.local(world);
+  for (int k = 0; k < 3; ++k)
+    if (std::abs(local[k]) < DoubleGeometry::kLeast) local[k] = 0;
+  return local;
+}
+
+template <class Shape>
+Shape local_in_doubles(const LocalSpace& space, Shape shape) {
+  const auto bring = [&](const auto& field) {
+    auto& value = shape.*field.member;
+    if constexpr (std::is_same_v<decltype(shape.*field.member), double&>)
+      value = space.local_length(value);
+    else if (field.meaning == primitives::Meaning::direction)
+      value *= scale_to_one(largest_component(value));
+    else
+      value = local_in_doubles(space, value);
+  };
+  std::apply([&](const auto&... fields) { (bring(fields), ...); },
+             fields_of(static_cast<const Shape*>(nullptr)));
+  return shape;
+}
+
+}  // namespace
+
+std::size_t DoubleGeometry::n_shapes() const {
+  std::size_t n = 0;
+  primitives::for_each_shape([&](auto kind) { n += decltype(kind)::of(*this).size(); });
+  return n;
+}
+
+DoubleGeometry make_double_geometry(const Scene& scene, const Geometry& geometry) {
+  DoubleGeometry made;
   made.vertices.resize(scene.vertices.size());
   for_each_grain(made.vertices.size(), [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      made.vertices[i] = geometry.space.local(scene.vertices[i]);
-      for (int k = 0; k < 3; ++k)
-        if (std::abs(made.vertices[i][k]) < DoubleTriangles::kLeast) made.vertices[i][k] = 0;
-    }
+    for (std::size_t i = first; i < last; ++i)
+      made.vertices[i] = local_in_doubles(geometry.space, scene.vertices[i]);
   });
   made.corners.resize(geometry.triangles.size());
   for_each_grain(made.corners.size(), [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) made.corners[i] = scene.triangles[geometry.sources[i]].vertex;
+  });
+  primitives::for_each_shape([&](auto kind) {
+    using Kind = decltype(kind);
+    auto& shapes = Kind::of(made);
+    shapes.reserve(Kind::of(geometry).size());
+    for (const auto& of_floats : Kind::of(geometry)) {
+      const auto& shape =
+          shapes.emplace_back(local_in_doubles(geometry.space, Kind::of(scene)[of_floats.source]));
+      if constexpr (requires { apart(shape, of_floats); })
+        made.apart = std::max(made.apart, apart(shape, of_floats));
+    }
   });
   return made;
 }

@@ -56,30 +56,33 @@ struct Geometry {
   }
 };
 
-// The triangles of a scene that is asked about in doubles (TreeOptions::geometry), as the file or the caller
+// The primitives of a scene that is asked about in doubles (TreeOptions::geometry), as the file or the caller
 // has them: in the scene's own space, where its floats are too, and exactly so. (The centre is 0, or within
-// twice of every coordinate, so that taking it from them rounds nothing.) Coordinates below kLeast are 0.
-// Instances are copies there: corners are where their transforms bring them in doubles.
-struct DoubleTriangles {
+// twice of every coordinate, so that taking it from them rounds nothing.) Coordinates below kLeast are 0, and
+// directions are multiplied by powers of two. Instances are copies there: vertices are where their transforms
+// bring them in doubles.
+struct DoubleGeometry {
   static constexpr double kLeast = 0x1p-100;
 
   RawVector<dvec3> vertices;
   RawVector<std::array<std::uint32_t, 3>> corners;  // of each triangle of the Geometry
-  Copies copies;                                    // of its instances
+#define KDRAY_DOUBLE_SHAPES(NAME, name, names, Struct) std::vector<primitives::Struct> names;
+  KDRAY_SHAPES(KDRAY_DOUBLE_SHAPES)  // of the Geometry
+#undef KDRAY_DOUBLE_SHAPES
+  double apart =
+      0;          // how far a cone and its floats may lie apart; of other kinds it is 5u of the scene's size
+  Copies copies;  // of the scene's instances
 
+  std::size_t n_shapes() const;
   std::array<dvec3, 3> at(std::size_t triangle) const {
     const auto& [a, b, c] = corners[triangle];
     return {vertices[a], vertices[b], vertices[c]};
   }
-  std::size_t bytes() const {
-    return vertices.size() * sizeof vertices[0] + corners.size() * sizeof corners[0];
-  }
 };
-DoubleTriangles make_double_triangles(const Scene& scene, const Geometry& geometry);
+DoubleGeometry make_double_geometry(const Scene& scene, const Geometry& geometry);
 
-// Makes the geometry of a scene of triangles alone, without instances, that is asked about in doubles: a
-// triangle whose corners differ in these is kept though rounding makes two of them equal, and then no ray of
-// floats meets it.
+// Makes the geometry of a scene without instances that is asked about in doubles: a triangle whose corners
+// differ in these is kept though rounding makes two of them equal, and then no ray of floats meets it.
 Geometry make_geometry_for_doubles(const Scene& scene);
 
 // Returns whether the floats of this space are its triangles' corners to the bit.

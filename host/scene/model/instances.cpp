@@ -208,7 +208,8 @@ Copies flatten_instances(Scene& scene) {
     try {
       add_copy(*meshes[instance.mesh], instance, scene);
     } catch (const std::domain_error& e) {
-      throw input_error(scene.name, 0, std::string("an instance: ") + e.what(), "leave --instances flat out");
+      throw input_error(scene.name, 0, std::string("an instance: ") + e.what(),
+                        "leave it out, or ask about the scene in floats");
     }
   }
   if (copies.size() > 0) copies.first.push_back(scene.primitive_count());

@@ -85,14 +85,17 @@ dvec3 from_segment(const Segment& s, const dvec3& from) {
   return from - std::clamp(glm::dot(from, s.axis), -s.half, s.half) * s.axis;
 }
 
-}  // namespace
-
 // On the segment itself, where there is none, across the axis.
-dvec3 normal_at(const layout::Capsule& c, const dvec3& point) {
-  const Segment s = segment_of(c);
+dvec3 normal_of(const Segment& s, const dvec3& point) {
   const dvec3 normal = from_segment(s, point - s.center);
   if (normal != dvec3(0)) return safe_normalize(normal);
-  return glm::normalize(glm::cross(s.axis, std::abs(s.axis.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)));
+  return any_across(s.axis);
+}
+
+}  // namespace
+
+dvec3 normal_at(const layout::Capsule& c, const dvec3& point) {
+  return normal_of(segment_of(c), point);
 }
 
 // ---- The bounds of a capsule inside a box.
@@ -205,44 +208,53 @@ Bounds clip(const CapsuleGeometry& c, const Bounds& region) {
 namespace {
 
 // Where a line enters and leaves.
+template <class Real>
 struct Chord {
-  double near, far;
+  Real near, far;
   bool empty() const { return !(near <= far); }
 };
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
-Chord in_ball(const dvec3& from, const dvec3& direction, double radius) {
-  const double square = glm::dot(direction, direction), middle = -glm::dot(from, direction) / square;
-  const double away = glm::length(from + middle * direction), left = (radius - away) * (radius + away);
-  if (!(left >= 0)) return {kFar, -kFar};
-  const double half = std::sqrt(left / square);
+template <class Real>
+Chord<Real> in_ball(const Vec<Real>& from, const Vec<Real>& direction, const Real& radius) {
+  using std::sqrt;
+  const Real square = dot(direction, direction), middle = -dot(from, direction) / square;
+  const Real away = length(from + middle * direction), left = (radius - away) * (radius + away);
+  if (!(left >= Real(0))) return {kFar, -kFar};
+  const Real half = sqrt(left / square);
   return {middle - half, middle + half};
 }
 
 // From the first place that the line shares with one of the balls about the ends or the cylinder to the last,
-// about the place that is nearest to the middle, as the kernels have it.
-Chord chord_of(const Line& line, const Segment& s) {
-  const dvec3 from = line.origin - s.center;
-  const double t_middle = -glm::dot(from, line.direction) / glm::dot(line.direction, line.direction);
-  const dvec3 p = from + t_middle * line.direction;
-  const Chord below = in_ball(p + s.half * s.axis, line.direction, s.radius);
-  const Chord above = in_ball(p - s.half * s.axis, line.direction, s.radius);
-  const double z = glm::dot(p, s.axis), dz = glm::dot(line.direction, s.axis);
-  const dvec3 across = p - z * s.axis, moving = line.direction - dz * s.axis;
-  Chord tube{-kFar, kFar};
-  if (moving != dvec3(0))
-    tube = in_ball(across, moving, s.radius);
-  else if (glm::length(across) > s.radius)
+// about the place that is nearest to the middle, as the kernels have it. from: the centre.
+template <class Real>
+Chord<Real> chord_of(const Vec<Real>& from, const Vec<Real>& direction, const Vec<Real>& axis,
+                     const Real& half, const Real& radius) {
+  using std::abs;
+  const Real t_middle = -dot(from, direction) / dot(direction, direction), none = 0;
+  const Vec<Real> p = from + t_middle * direction;
+  const Chord<Real> below = in_ball<Real>(p + half * axis, direction, radius);
+  const Chord<Real> above = in_ball<Real>(p - half * axis, direction, radius);
+  const Real z = dot(p, axis), dz = dot(direction, axis);
+  const Vec<Real> across = p - z * axis, moving = direction - dz * axis;
+  Chord<Real> tube{-kFar, kFar};
+  if (moving != Vec<Real>(none))
+    tube = in_ball(across, moving, radius);
+  else if (length(across) > radius)
     tube = {kFar, -kFar};
-  if (dz != 0) {
-    const auto [lower, upper] = std::minmax({(-s.half - z) / dz, (s.half - z) / dz});
-    tube = {std::max(tube.near, lower), std::min(tube.far, upper)};
-  } else if (std::abs(z) > s.half) {
+  if (dz != none) {
+    const Real one = (-half - z) / dz, other = (half - z) / dz;
+    tube = {std::max(tube.near, std::min(one, other)), std::min(tube.far, std::max(one, other))};
+  } else if (abs(z) > half) {
     tube = {kFar, -kFar};
   }
   if (tube.empty()) tube = {kFar, -kFar};
   return {std::min({tube.near, below.near, above.near}) + t_middle,
           std::max({tube.far, below.far, above.far}) + t_middle};
+}
+
+Chord<double> chord_of(const Line& line, const Segment& s) {
+  return chord_of<double>(line.origin - s.center, line.direction, s.axis, s.half, s.radius);
 }
 
 // How far outside of the surface a point is; below 0 inside.
@@ -265,7 +277,7 @@ dvec3 place_on(const CapsuleGeometry& c, double share, const dvec3& direction) {
 // Well inside of the outline, near which the distance is off by more than the surface is.
 std::optional<double> sure_target(const Line& line, const CapsuleGeometry& c, double margin) {
   Segment s = segment_of(c);
-  const Chord chord = chord_of(line, s);
+  const Chord<double> chord = chord_of(line, s);
   s.radius -= margin + 0.01 * s.radius;
   if (!(s.radius > 0) || chord_of(line, s).empty()) return {};
   return chord.near > 0 ? chord.near : chord.far;
@@ -282,7 +294,7 @@ bool meets_again(const Line& line, const CapsuleGeometry& c, double t, const dve
 // The start is on the side that it is on: inside there is one crossing to each of its sides.
 Crossings crossings(const Line& line, const layout::Capsule& c) {
   const Segment s = segment_of(c);
-  Chord chord = chord_of(line, s);
+  Chord<double> chord = chord_of(line, s);
   constexpr double kLeast = std::numeric_limits<double>::min();
   Crossings found;
   if (chord.empty()) return found;
@@ -300,6 +312,48 @@ Crossings crossings(const Line& line, const layout::Capsule& c) {
 
 double distance_to(const layout::Capsule& c, const dvec3& point) {
   return std::abs(height(point, segment_of(c)));
+}
+
+// ---- In a scene of doubles.
+
+namespace {
+
+Segment segment_of(const Capsule& c) {
+  const dvec3 way = c.end - c.start;
+  return {0.5 * (c.start + c.end), way == dvec3(0) ? dvec3(0, 0, 1) : safe_normalize(way),
+          0.5 * glm::length(way), c.radius};
+}
+
+}  // namespace
+
+dvec3 normal_at(const Capsule& c, const dvec3& point) {
+  return normal_of(segment_of(c), point);
+}
+
+Crossings crossings(const Line& line, const Capsule& c) {
+  const Segment about = segment_of(c);
+  const LineNear near(about.center, line);
+  Crossings found;
+  if (near.misses(about.half + c.radius) || near.misses(about.axis, c.radius)) return found;
+  Vec<Pair> way, to_center;  // from the middle, to which about.center is rounded
+  for (int k = 0; k < 3; ++k) {
+    way[k] = exact_sum(c.end[k], -c.start[k]);
+    to_center[k] = exact_sum(about.center[k], -c.start[k]) - Pair(0.5) * way[k];
+  }
+  const Pair whole = length(way), none = 0.0;
+  const Vec<Pair> axis = whole == none ? Vec<Pair>(dvec3(0, 0, 1)) : way / whole;
+  const Chord<Pair> chord =
+      chord_of<Pair>(near.from() + to_center, near.direction(), axis, Pair(0.5) * whole, c.radius);
+  if (!(chord.near < chord.far)) return found;  // it is touched, or passed by
+  found.add(near.line_t(chord.near));
+  found.add(near.line_t(chord.far));
+  return found;
+}
+
+NearestOn nearest_on(const Capsule& c, const dvec3& point) {
+  const Segment s = segment_of(c);
+  const dvec3 out = from_segment(s, point - s.center);
+  return {std::abs(glm::length(out) - s.radius), point - out + s.radius * normal_of(s, point)};
 }
 
 }  // namespace kdray::primitives

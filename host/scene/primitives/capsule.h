@@ -60,6 +60,10 @@ std::array<float, KDRAY_CAPSULE_ROWS - 1> rows_of(const layout::Capsule& c);
 dvec3 normal_at(const layout::Capsule& c, const dvec3& point);
 Crossings crossings(const Line& line, const layout::Capsule& c);
 double distance_to(const layout::Capsule& c, const dvec3& point);
+// In a scene of doubles.
+dvec3 normal_at(const Capsule& c, const dvec3& point);
+Crossings crossings(const Line& line, const Capsule& c);
+NearestOn nearest_on(const Capsule& c, const dvec3& point);
 
 // For `kdray verify`.
 constexpr bool has_outline(const CapsuleGeometry&) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+
 #include <utility>
 
 #include "base/box.h"
@@ -78,15 +79,6 @@ Box bounds_of(const layout::Cone& c) {
 
 std::array<float, KDRAY_CONE_ROWS - 1> rows_of(const layout::Cone& c) {
   return {c.base[0], c.base[1], c.base[2], c.axis[0], c.axis[1], c.axis[2], c.base_radius, c.height, c.slope};
-}
-
-// The radius grows by `slope` along the axis, so the normal leans back by as much.
-dvec3 normal_at(const layout::Cone& c, const dvec3& point) {
-  const dvec3 axis(c.axis[0], c.axis[1], c.axis[2]);
-  const dvec3 from = point - dvec3(c.base[0], c.base[1], c.base[2]);
-  const dvec3 out = from - glm::dot(from, axis) * axis;
-  if (out == dvec3(0)) return c.slope > 0 ? -axis : axis;  // at the tip
-  return glm::normalize(safe_normalize(out) - static_cast<double>(c.slope) * axis);
 }
 
 // ---- The bounds of a truncated cone's lateral surface inside a box.
@@ -224,42 +216,149 @@ bool meets_again(const Line& line, const ConeGeometry& c, double t, const dvec3&
   return hits_again(along(line, c), t, glm::dot(side, outward(line.origin, c)) > 0);
 }
 
-// About the place of the line that is nearest to the middle of the axis, so that no term is larger than the
-// cone makes it. (0 <= s <= height keeps the other nappe out too: its radius is negative.)
-Crossings crossings(const Line& line, const layout::Cone& c) {
-  const dvec3 unit(c.axis[0], c.axis[1], c.axis[2]);
-  const dvec3 from = line.origin - dvec3(c.base[0], c.base[1], c.base[2]);
-  const double height = c.height, slope = c.slope;
-  const double middle =
-      -glm::dot(from - 0.5 * height * unit, line.direction) / glm::dot(line.direction, line.direction);
-  const dvec3 g = from + middle * line.direction;
-  const double s = glm::dot(g, unit), ds = glm::dot(line.direction, unit);
-  const dvec3 across = g - s * unit, moving = line.direction - ds * unit;
-  const double radius = c.base_radius + slope * s, growing = slope * ds;
-  const double length = glm::length(moving), far = glm::length(across);
-  const double a = (length - growing) * (length + growing), b = glm::dot(across, moving) - radius * growing,
-               q = (far - radius) * (far + radius);
-  Crossings found;
-  const double root = std::sqrt(b * b - a * q);
-  if (!(root > 0)) return found;
-  const double sum = -(b + std::copysign(root, b));
-  double roots[2] = {q / sum, sum / a};
-  if (roots[0] > roots[1]) std::swap(roots[0], roots[1]);
-  for (const double t : roots) {
-    const double at = s + t * ds;
-    if (at >= 0 && at <= height) found.add(middle + t, at / height);
+namespace {
+
+// With the base as the origin.
+template <class Real>
+struct Slanted {
+  Vec<Real> unit;
+  Real base_radius, slope, height;
+};
+
+Slanted<double> slanted(const layout::Cone& c) {
+  return {dvec3(c.axis[0], c.axis[1], c.axis[2]), c.base_radius, c.slope, c.height};
+}
+
+template <class Real>
+Slanted<Real> slanted(const Cone& c) {
+  Vec<Real> axis;
+  for (int k = 0; k < 3; ++k) axis[k] = Real(c.apex[k]) - Real(c.base[k]);
+  const Real height = length(axis);
+  return {axis / height, c.base_radius, (Real(c.apex_radius) - Real(c.base_radius)) / height, height};
+}
+
+// Of a*t^2 + 2*b*t + q.
+double discriminant(double a, double b, double q, const dvec3&, const dvec3&, double, double) {
+  return b * b - a * q;
+}
+// Of cones that are far wider than high the radius and its growth are as large as they are flat, and their
+// product's square cancels out.
+Pair discriminant(const Pair&, const Pair&, const Pair&, const Vec<Pair>& across, const Vec<Pair>& moving,
+                  const Pair& radius, const Pair& growing) {
+  const Vec<Pair> v = radius * moving - growing * across;
+  Vec<Pair> area;
+  for (int k = 0; k < 3; ++k) {
+    const int l = (k + 1) % 3, m = (k + 2) % 3;
+    area[k] = across[l] * moving[m] - across[m] * moving[l];
   }
+  return dot(v, v) - dot(area, area);
+}
+
+// About the place of the line that is nearest to the middle of the axis, so that no term is larger than the
+// cone makes it. (0 <= s <= height keeps the other nappe out too: its radius is negative.) from: the base.
+template <class Real, class Add>
+void cross(const Vec<Real>& from, const Vec<Real>& direction, const Slanted<Real>& cone, const Add& add) {
+  using std::copysign, std::sqrt;
+  const Vec<Real>& unit = cone.unit;
+  const Real &height = cone.height, &slope = cone.slope, none = 0;
+  const Real middle = -dot(from - Real(0.5) * height * unit, direction) / dot(direction, direction);
+  const Vec<Real> g = from + middle * direction;
+  const Real s = dot(g, unit), ds = dot(direction, unit);
+  const Vec<Real> across = g - s * unit, moving = direction - ds * unit;
+  const Real radius = cone.base_radius + slope * s, growing = slope * ds;
+  const Real broad = length(moving), far = length(across);
+  const Real a = (broad - growing) * (broad + growing), b = dot(across, moving) - radius * growing,
+             q = (far - radius) * (far + radius);
+  const Real root = sqrt(discriminant(a, b, q, across, moving, radius, growing));
+  if (!(root > none)) return;
+  const Real sum = -(b + copysign(root, b));
+  Real roots[2] = {q / sum, sum / a};
+  if (roots[0] > roots[1]) std::swap(roots[0], roots[1]);
+  for (const Real& t : roots) {
+    const Real at = s + t * ds;
+    if (at >= none && at <= height) add(middle + t, at / height);
+  }
+}
+
+// In the half-plane of the point, where the surface is a line from the base to the apex: from the base along
+// the axis and across it, `s` and `out`, where that line's nearest place is at `along`.
+struct InPlane {
+  double s, out, along;
+  double distance(double slope) const { return std::hypot(s - along, out - slope * along); }
+};
+InPlane in_plane(const dvec3& from, const Slanted<double>& cone) {
+  const double s = glm::dot(from, cone.unit), out = glm::length(from - s * cone.unit) - cone.base_radius,
+               slope = cone.slope;
+  return {s, out, std::clamp((s + slope * out) / (1 + slope * slope), 0.0, cone.height)};
+}
+
+// The radius grows by `slope` along the axis, so the normal leans back by as much.
+dvec3 normal_of(const dvec3& from, const Slanted<double>& cone) {
+  const dvec3 out = from - glm::dot(from, cone.unit) * cone.unit;
+  if (out == dvec3(0)) return cone.slope > 0 ? -cone.unit : cone.unit;  // at the tip
+  return glm::normalize(safe_normalize(out) - cone.slope * cone.unit);
+}
+
+}  // namespace
+
+dvec3 normal_at(const layout::Cone& c, const dvec3& point) {
+  return normal_of(point - dvec3(c.base[0], c.base[1], c.base[2]), slanted(c));
+}
+
+Crossings crossings(const Line& line, const layout::Cone& c) {
+  Crossings found;
+  cross<double>(line.origin - dvec3(c.base[0], c.base[1], c.base[2]), line.direction, slanted(c),
+                [&](double t, double u) { found.add(t, u); });
   return found;
 }
 
-// In the half-plane of the point, where the surface is a line from the base to the apex.
 double distance_to(const layout::Cone& c, const dvec3& point) {
-  const dvec3 unit(c.axis[0], c.axis[1], c.axis[2]);
-  const dvec3 from = point - dvec3(c.base[0], c.base[1], c.base[2]);
-  const double s = glm::dot(from, unit), out = glm::length(from - s * unit) - c.base_radius;
-  const double slope = c.slope,
-               along = std::clamp((s + slope * out) / (1 + slope * slope), 0.0, double{c.height});
-  return std::hypot(s - along, out - slope * along);
+  const Slanted<double> cone = slanted(c);
+  return in_plane(point - dvec3(c.base[0], c.base[1], c.base[2]), cone).distance(cone.slope);
+}
+
+// ---- In a scene of doubles.
+
+dvec3 normal_at(const Cone& c, const dvec3& point) {
+  return normal_of(point - c.base, slanted<double>(c));
+}
+
+Crossings crossings(const Line& line, const Cone& c) {
+  const dvec3 middle = 0.5 * (c.base + c.apex), axis = c.apex - c.base;
+  const double radius = std::max(c.base_radius, c.apex_radius);
+  const LineNear near(middle, line);
+  Crossings found;
+  if (near.misses(std::hypot(0.5 * glm::length(axis), radius)) || near.misses(axis, radius)) return found;
+  Vec<Pair> to_middle;
+  for (int k = 0; k < 3; ++k) to_middle[k] = exact_sum(middle[k], -c.base[k]);
+  cross<Pair>(near.from() + to_middle, near.direction(), slanted<Pair>(c),
+              [&](const Pair& t, const Pair& u) { found.add(near.line_t(t), u); });
+  return found;
+}
+
+NearestOn nearest_on(const Cone& c, const dvec3& point) {
+  const Slanted<double> cone = slanted<double>(c);
+  const dvec3 from = point - c.base;
+  const InPlane at = in_plane(from, cone);
+  return {at.distance(cone.slope),
+          c.base + at.along * cone.unit +
+              (cone.base_radius + cone.slope * at.along) * unit_across(cone.unit, from)};
+}
+
+void keep_height(ConeGeometry& c, const Cone& source) {
+  if (c.base != c.apex) return;
+  const double size =
+      std::max({largest_component(dvec3(c.base)), double{c.base_radius}, double{c.apex_radius}});
+  c.apex = vec3(dvec3(c.base) + 0x1p-22 * size * safe_normalize(source.apex - source.base));
+}
+
+double apart(const Cone& c, const ConeGeometry& of_floats) {
+  const dvec3 base(of_floats.base), apex(of_floats.apex);
+  const double tilt = glm::distance(glm::normalize(c.apex - c.base), glm::normalize(apex - base));
+  return std::max(glm::distance(base, c.base), glm::distance(apex, c.apex)) +
+         std::max(std::abs(c.base_radius - of_floats.base_radius),
+                  std::abs(c.apex_radius - of_floats.apex_radius)) +
+         tilt * std::max(c.base_radius, c.apex_radius);
 }
 
 }  // namespace kdray::primitives

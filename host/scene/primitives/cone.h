@@ -61,6 +61,15 @@ std::array<float, KDRAY_CONE_ROWS - 1> rows_of(const layout::Cone& c);
 dvec3 normal_at(const layout::Cone& c, const dvec3& point);
 Crossings crossings(const Line& line, const layout::Cone& c);
 double distance_to(const layout::Cone& c, const dvec3& point);
+// In a scene of doubles.
+dvec3 normal_at(const Cone& c, const dvec3& point);
+Crossings crossings(const Line& line, const Cone& c);
+NearestOn nearest_on(const Cone& c, const dvec3& point);
+// Gives it a height, along its axis, where floats leave none.
+void keep_height(ConeGeometry& c, const Cone& source);
+// Returns how far apart the two may lie, both in the scene's own space: a cone that is short and wide is
+// tilted by the rounding of its ends.
+double apart(const Cone& c, const ConeGeometry& of_floats);
 
 // For `kdray verify`.
 constexpr bool has_outline(const ConeGeometry&) {

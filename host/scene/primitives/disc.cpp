@@ -189,11 +189,46 @@ Crossings crossings(const Line& line, const layout::Disc& d) {
   return found;
 }
 
+namespace {
+
+NearestOn nearest_in(const dvec3& center, const dvec3& normal, double radius, const dvec3& point) {
+  const dvec3 n = glm::normalize(normal), from = point - center;
+  const double above = glm::dot(from, n);
+  const dvec3 across = from - above * n;
+  const double out = glm::length(across), beyond = out - radius;
+  return {std::hypot(above, std::max(beyond, 0.0)), center + (beyond > 0 ? radius / out : 1.0) * across};
+}
+
+}  // namespace
+
 double distance_to(const layout::Disc& d, const dvec3& point) {
-  const dvec3 n = glm::normalize(dvec3(d.normal[0], d.normal[1], d.normal[2]));
-  const dvec3 from = point - dvec3(d.center[0], d.center[1], d.center[2]);
-  const double above = glm::dot(from, n), beyond = glm::length(from - above * n) - d.radius;
-  return std::hypot(above, std::max(beyond, 0.0));
+  return nearest_in(dvec3(d.center[0], d.center[1], d.center[2]),
+                    dvec3(d.normal[0], d.normal[1], d.normal[2]), d.radius, point)
+      .distance;
+}
+
+// ---- In a scene of doubles.
+
+dvec3 normal_at(const Disc& d, const dvec3&) {
+  return safe_normalize(d.normal);
+}
+
+// A line in the disc's plane, or so little across it that pairs can't tell, passes it by.
+Crossings crossings(const Line& line, const Disc& d) {
+  const LineNear near(d.center, line);
+  Crossings found;
+  if (near.misses(d.radius)) return found;
+  const Vec<Pair> n(d.normal);
+  const Pair facing = dot(n, near.direction());
+  if (!(std::abs(facing.high) > 0x1p-98 * glm::dot(glm::abs(d.normal), glm::abs(line.direction))))
+    return found;
+  const Pair t = -dot(n, near.from()) / facing, away = length(near.from() + t * near.direction());
+  if (away <= Pair(d.radius)) found.add(near.line_t(t), away / d.radius);
+  return found;
+}
+
+NearestOn nearest_on(const Disc& d, const dvec3& point) {
+  return nearest_in(d.center, d.normal, d.radius, point);
 }
 
 }  // namespace kdray::primitives

@@ -59,6 +59,10 @@ std::array<float, KDRAY_DISC_ROWS - 1> rows_of(const layout::Disc& d);
 dvec3 normal_at(const layout::Disc& d, const dvec3& point);
 Crossings crossings(const Line& line, const layout::Disc& d);
 double distance_to(const layout::Disc& d, const dvec3& point);
+// In a scene of doubles.
+dvec3 normal_at(const Disc& d, const dvec3& point);
+Crossings crossings(const Line& line, const Disc& d);
+NearestOn nearest_on(const Disc& d, const dvec3& point);
 
 // For `kdray verify`.
 constexpr bool has_outline(const DiscGeometry&) {

@@ -15,11 +15,8 @@ namespace {
 
 // a + b rounded down to float: the sum in double and, where that rounded up, one step below it first.
 float sum_down(double a, double b) {
-  double sum = a + b;
-  const double back = sum - a;
-  const double lost = (a - (sum - back)) + (b - back);  // exactly what the rounding took
-  if (lost < 0) sum = std::nextafter(sum, -std::numeric_limits<double>::infinity());
-  return round_down(sum);
+  const auto [sum, lost] = exact_sum(a, b);
+  return round_down(lost < 0 ? std::nextafter(sum, -std::numeric_limits<double>::infinity()) : sum);
 }
 
 }  // namespace
@@ -38,6 +35,19 @@ Box wide_box_around(const vec3& center, const vec3& reach) {
   return {center - wide, center + wide};
 }
 
+dvec3 any_across(const dvec3& axis) {
+  return glm::normalize(glm::cross(axis, std::abs(axis.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)));
+}
+
+// Twice, since what is left of a way along the axis is mostly rounding.
+dvec3 unit_across(const dvec3& axis, const dvec3& way) {
+  const auto across = [&](const dvec3& v) { return v - glm::dot(v, axis) * axis; };
+  const dvec3 once = across(way);
+  if (once == dvec3(0)) return any_across(axis);
+  const dvec3 twice = across(safe_normalize(once));
+  return twice == dvec3(0) ? any_across(axis) : glm::normalize(twice);
+}
+
 dvec3 disc_reach(const dvec3& axis) {
   // Scaled to at most 1 first, so that no square overflows or vanishes.
   const double largest = std::max({std::abs(axis.x), std::abs(axis.y), std::abs(axis.z)});
@@ -47,6 +57,42 @@ dvec3 disc_reach(const dvec3& axis) {
   const double sum = square.x + square.y + square.z;
   return {std::sqrt((square.y + square.z) / sum), std::sqrt((square.x + square.z) / sum),
           std::sqrt((square.x + square.y) / sum)};
+}
+
+// In two steps: after the first a line from far off is as far from the nearest place as a double loses of its
+// way. (The way from the place and what is added to it are exact before they are rounded once.)
+LineNear::LineNear(const dvec3& place, const Line& line)
+    : line_(line), direction_(line.direction), slack_(0x1p-48 * largest_component(place)) {
+  const dvec3& d = line.direction;
+  const double square = glm::dot(d, d);
+  const auto forward = [&](const dvec3& to_place) { return glm::dot(to_place, d) / square; };
+  const double first = forward(place - line.origin);
+  for (int k = 0; k < 3; ++k)
+    from_[k] = exact_sum(line.origin[k], -place[k]) + exact_product(first, d[k]) + line.rest[k];
+  const double second = forward(-dvec3(from_));
+  for (int k = 0; k < 3; ++k) from_[k] += exact_product(second, d[k]);
+  ahead_ = exact_sum(first, second);
+}
+
+namespace {
+
+constexpr double kMore = 1 + 0x1p-30, kRounding = 0x1p-40;  // far more than doubles lose
+
+}  // namespace
+
+bool LineNear::misses(double reach) const {
+  const dvec3 from(from_);
+  reach = reach * kMore + slack_;
+  if (glm::dot(from, from) > reach * reach) return true;
+  const double ahead(ahead_), half = reach / glm::length(line_.direction) + kRounding * std::abs(ahead);
+  return ahead + half < line_.first || ahead - half > line_.last;
+}
+
+bool LineNear::misses(const dvec3& axis, double reach) const {
+  const dvec3 from(from_), across = glm::cross(line_.direction, axis);
+  const double size = glm::length(line_.direction) * glm::length(axis);
+  return std::abs(glm::dot(from, across)) >
+         (reach * kMore + slack_) * glm::length(across) + kRounding * size * glm::length(from);
 }
 
 bool hits_again(const Quadratic& q, double t, bool outside) {

@@ -10,7 +10,9 @@
 //         - for the kernels: pack (all but number and material), bounds_of (generous ones of layout::S) and
 //           rows_of (its rows in a block but for the index);
 //         - for queries: normal_at (of layout::S, at a point on it), crossings (of a line with it, in
-//           double), distance_to (of a point, in double);
+//           double), distance_to (of a point, in double); for scenes of doubles, of S in the scene's own
+//           space, normal_at, crossings (in pairs of doubles), nearest_on (of a point), and where floats may
+//           tilt or flatten it apart and keep_height (as cones);
 //         - for `kdray verify`: place_on (somewhere on it, or within its outline, for a share of 0 to 1 and
 //           any unit direction), sure_target (the t of a hit that is certain by more than a margin),
 //           meets_again (whether a hit at t is surely none of a ray that has just left it towards `side`).

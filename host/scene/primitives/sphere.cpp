@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "base/box.h"
 #include "scene/primitives/shape_tools.h"
@@ -146,48 +145,71 @@ bool meets_again(const Line& line, const SphereGeometry& s, double t, const dvec
 
 namespace {
 
-std::pair<double, double> two_sum(double a, double b) {
-  const double sum = a + b, back = sum - a;
-  return {sum, (a - (sum - back)) + (b - back)};
-}
-
 // Returns the square of the distance from the centre less that of the radius, to 2^-100 of the larger: a
 // point as near to the surface as doubles can be is on the side that it is on.
 double power_of(const dvec3& point, const layout::Sphere& s) {
   double sum = -double{s.radius} * s.radius, rest = 0;
   for (int k = 0; k < 3; ++k) {
-    const auto [high, low] = two_sum(point[k], -double{s.center[k]});
+    const auto [high, low] = exact_sum(point[k], -double{s.center[k]});
     const double square = high * high;
-    const auto [added, lost] = two_sum(sum, square);
+    const auto [added, lost] = exact_sum(sum, square);
     sum = added;
     rest += lost + std::fma(high, high, -square) + 2 * high * low;
   }
   return sum + rest;
 }
 
+// `way`: to the centre. The root that is nearer to the origin is found from the other: it has the sign of the
+// origin's side, which `power` tells.
+template <class Real, class Add>
+void cross(const Vec<Real>& way, const Vec<Real>& direction, const Real& radius, const Real& power,
+           const Add& add) {
+  using std::copysign, std::sqrt, std::min, std::max;
+  const Real length2 = dot(direction, direction), nearest = dot(way, direction) / length2;
+  const Real distance = length(way - nearest * direction), none = 0;
+  if (power > none && !(distance < radius)) return;
+  const Real half = sqrt(max(none, (radius - distance) * (radius + distance)) / length2);
+  const Real far = nearest + copysign(half, nearest), near = far == none ? none : power / (length2 * far);
+  Real t0 = min(near, far), t1 = max(near, far);
+  const Real least = std::numeric_limits<double>::min();
+  if (power < none) t0 = min(t0, -least), t1 = max(t1, least);
+  if (t0 == t1) return;  // it is touched
+  add(t0);
+  add(t1);
+}
+
 }  // namespace
 
-// The root that is nearer to the origin is found from the other: it has the sign of the origin's side.
 Crossings crossings(const Line& line, const layout::Sphere& s) {
   const dvec3 way = dvec3(s.center[0], s.center[1], s.center[2]) - line.origin;
-  const double length2 = glm::dot(line.direction, line.direction), radius = s.radius;
-  const double nearest = glm::dot(way, line.direction) / length2, power = power_of(line.origin, s);
-  const double distance = glm::length(way - nearest * line.direction);
   Crossings found;
-  if (power > 0 && !(distance < radius)) return found;
-  const double half = std::sqrt(std::max(0.0, (radius - distance) * (radius + distance)) / length2);
-  const double far = nearest + std::copysign(half, nearest), near = far == 0 ? 0 : power / (length2 * far);
-  double t0 = std::min(near, far), t1 = std::max(near, far);
-  constexpr double kLeast = std::numeric_limits<double>::min();
-  if (power < 0) t0 = std::min(t0, -kLeast), t1 = std::max(t1, kLeast);
-  if (t0 == t1) return found;  // it is touched
-  found.add(t0);
-  found.add(t1);
+  cross<double>(way, line.direction, s.radius, power_of(line.origin, s), [&](double t) { found.add(t); });
   return found;
 }
 
 double distance_to(const layout::Sphere& s, const dvec3& point) {
   return std::abs(glm::distance(point, dvec3(s.center[0], s.center[1], s.center[2])) - s.radius);
+}
+
+// ---- In a scene of doubles.
+
+dvec3 normal_at(const Sphere& s, const dvec3& point) {
+  const dvec3 out = point - s.center;
+  return out == dvec3(0) ? dvec3(0, 0, 1) : safe_normalize(out);
+}
+
+Crossings crossings(const Line& line, const Sphere& s) {
+  const LineNear near(s.center, line);
+  Crossings found;
+  if (near.misses(s.radius)) return found;
+  const Pair power = dot(near.from(), near.from()) - exact_product(s.radius, s.radius);
+  cross<Pair>(-near.from(), near.direction(), s.radius, power,
+              [&](const Pair& t) { found.add(near.line_t(t)); });
+  return found;
+}
+
+NearestOn nearest_on(const Sphere& s, const dvec3& point) {
+  return {std::abs(glm::distance(point, s.center) - s.radius), s.center + s.radius * normal_at(s, point)};
 }
 
 }  // namespace kdray::primitives

@@ -56,6 +56,10 @@ std::array<float, KDRAY_SPHERE_ROWS - 1> rows_of(const layout::Sphere& s);
 dvec3 normal_at(const layout::Sphere& s, const dvec3& point);
 Crossings crossings(const Line& line, const layout::Sphere& s);
 double distance_to(const layout::Sphere& s, const dvec3& point);
+// In a scene of doubles.
+dvec3 normal_at(const Sphere& s, const dvec3& point);
+Crossings crossings(const Line& line, const Sphere& s);
+NearestOn nearest_on(const Sphere& s, const dvec3& point);
 
 // For `kdray verify`.
 constexpr bool has_outline(const SphereGeometry&) {

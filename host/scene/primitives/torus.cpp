@@ -74,15 +74,44 @@ std::array<float, KDRAY_TORUS_ROWS - 1> rows_of(const layout::Torus& t) {
           t.axis[1],   t.axis[2],   t.major_radius, t.minor_radius};
 }
 
+namespace {
+
+struct Ideal {
+  dvec3 center, axis;
+  double major, minor;
+};
+Ideal ideal(const TorusGeometry& t) {
+  return {dvec3(t.center), glm::normalize(dvec3(t.axis)), t.major_radius, t.minor_radius};
+}
+Ideal ideal(const layout::Torus& t) {
+  return {dvec3(t.center[0], t.center[1], t.center[2]),
+          glm::normalize(dvec3(t.axis[0], t.axis[1], t.axis[2])), t.major_radius, t.minor_radius};
+}
+Ideal ideal(const Torus& t) {
+  return {t.center, glm::normalize(t.axis), t.major_radius, t.minor_radius};
+}
+
 // Away from the nearest place of the circle; in the tube's middle, where there is none, along the axis.
+dvec3 normal_of(const Ideal& t, const dvec3& point) {
+  const dvec3 from = point - t.center;
+  const double along = glm::dot(from, t.axis);
+  const dvec3 across = from - along * t.axis;
+  const double away = glm::length(across), beyond = away - t.major;
+  const dvec3 out = away > 0 ? across / away : dvec3(0), normal = beyond * out + along * t.axis;
+  return normal == dvec3(0) ? t.axis : glm::normalize(normal);
+}
+
+// How far it is from the circle.
+double from_circle(const Ideal& t, const dvec3& point) {
+  const dvec3 from = point - t.center;
+  const double z = glm::dot(from, t.axis), out = glm::length(from - z * t.axis) - t.major;
+  return std::hypot(out, z);
+}
+
+}  // namespace
+
 dvec3 normal_at(const layout::Torus& t, const dvec3& point) {
-  const dvec3 axis = glm::normalize(dvec3(t.axis[0], t.axis[1], t.axis[2]));
-  const dvec3 from = point - dvec3(t.center[0], t.center[1], t.center[2]);
-  const double along = glm::dot(from, axis);
-  const dvec3 across = from - along * axis;
-  const double away = glm::length(across), beyond = away - static_cast<double>(t.major_radius);
-  const dvec3 out = away > 0 ? across / away : dvec3(0), normal = beyond * out + along * axis;
-  return normal == dvec3(0) ? axis : glm::normalize(normal);
+  return normal_of(ideal(t), point);
 }
 
 // ---- The bounds of a torus inside a box.
@@ -195,12 +224,12 @@ constexpr int kRootSteps = 240;  // a quarter of them halve
 // h, the distance from the torus' circle, along a line.
 class Along {
  public:
-  Along(const Line& line, const TorusGeometry& t) : major_(t.major_radius) {
-    const dvec3 axis = glm::normalize(dvec3(t.axis)), from = line.origin - dvec3(t.center);
+  Along(const Line& line, const Ideal& t) : major_(t.major) {
+    const dvec3 axis = t.axis, from = line.origin - t.center;
     z_ = glm::dot(from, axis), dz_ = glm::dot(line.direction, axis);
     across_ = from - z_ * axis, moving_ = line.direction - dz_ * axis;
     square_ = glm::dot(line.direction, line.direction);
-    const double size = 1.01 * (major_ + t.minor_radius), middle = -glm::dot(from, line.direction) / square_;
+    const double size = 1.01 * (major_ + t.minor), middle = -glm::dot(from, line.direction) / square_;
     const dvec3 nearest = from + middle * line.direction;
     const double half = std::sqrt(std::max(0.0, size * size - glm::dot(nearest, nearest)) / square_);
     lo_ = middle - half, hi_ = middle + half;
@@ -292,7 +321,7 @@ dvec3 outward(const dvec3& point, const TorusGeometry& t) {
 
 // Through a valley well below the surface, near which the distance is off by more than the surface is.
 std::optional<double> sure_target(const Line& line, const TorusGeometry& t, double margin) {
-  const Along along(line, t);
+  const Along along(line, ideal(t));
   const double minor = t.minor_radius, deep = 0.99 * minor - margin, clear = 1.01 * minor + margin;
   const bool from_left = along.height(along.left()) < clear;
   const double valley = from_left ? along.left() : along.right();
@@ -304,7 +333,7 @@ std::optional<double> sure_target(const Line& line, const TorusGeometry& t, doub
 // A ray that has left the torus may come back on its way down, or once it comes as near as rounding reaches
 // behind a hill. One that has gone into it may come out where a hill is as near as that.
 bool meets_again(const Line& line, const TorusGeometry& t, double at, const dvec3& side) {
-  const Along along(line, t);
+  const Along along(line, ideal(t));
   const double minor = t.minor_radius, hill = along.hill();
   const double reach = 0x1p-17 * (t.major_radius + minor + glm::length(line.origin)), deep = minor - reach;
   const bool outside = glm::dot(side, outward(line.origin, t)) > 0;
@@ -321,27 +350,82 @@ bool meets_again(const Line& line, const TorusGeometry& t, double at, const dvec
   return at < 0.5 * exit;
 }
 
+namespace {
+
 // Down through the surface before each valley that is below it, and up behind it. Where the line has one
 // valley, the hill and the other lie at its end.
-Crossings crossings(const Line& line, const layout::Torus& t) {
-  const auto vector = [](const float(&v)[3]) { return vec3(v[0], v[1], v[2]); };
-  const Along along(line, {vector(t.center), vector(t.axis), t.major_radius, t.minor_radius, 0});
-  const double minor = t.minor_radius;
-  const auto is_below = [&](double at) { return along.height(at) < minor; };
+Crossings crossings_of(const Line& line, const Ideal& t) {
+  const Along along(line, t);
+  const auto is_below = [&](double at) { return along.height(at) < t.minor; };
   Crossings found;
   if (!(along.lo() < along.hi())) return found;
   const double turns[] = {along.lo(), along.left(), along.hill(), along.right(), along.hi()};
   for (int i = 0; i < 4; ++i)
     if (is_below(turns[i]) != is_below(turns[i + 1]))
-      found.add(along.crossing(turns[i], turns[i + 1], is_below(turns[i]) ? 1 : -1, minor));
+      found.add(along.crossing(turns[i], turns[i + 1], is_below(turns[i]) ? 1 : -1, t.minor));
   return found;
 }
 
+}  // namespace
+
+Crossings crossings(const Line& line, const layout::Torus& t) {
+  return crossings_of(line, ideal(t));
+}
+
 double distance_to(const layout::Torus& t, const dvec3& point) {
-  const dvec3 axis = glm::normalize(dvec3(t.axis[0], t.axis[1], t.axis[2]));
-  const dvec3 from = point - dvec3(t.center[0], t.center[1], t.center[2]);
-  const double z = glm::dot(from, axis), out = glm::length(from - z * axis) - t.major_radius;
-  return std::abs(std::hypot(out, z) - t.minor_radius);
+  return std::abs(from_circle(ideal(t), point) - t.minor_radius);
+}
+
+// ---- In a scene of doubles.
+
+dvec3 normal_at(const Torus& t, const dvec3& point) {
+  return normal_of(ideal(t), point);
+}
+
+namespace {
+
+// Two steps of Newton's for (p^2 + R^2 - r^2)^2 = 4*R^2*(p^2 - (p*axis)^2), whose value is found in pairs.
+// Where the line all but touches the torus there, t stays.
+Pair improved(double first, const LineNear& line, const Torus& torus) {
+  const Vec<Pair> axis(torus.axis);
+  const dvec3 direction(line.direction()), unit = glm::normalize(torus.axis);
+  const Pair major2 = exact_product(torus.major_radius, torus.major_radius),
+             minor2 = exact_product(torus.minor_radius, torus.minor_radius);
+  Pair t = first;
+  for (int step = 0; step < 2; ++step) {
+    const Vec<Pair> p = line.from() + t * line.direction();
+    const Pair square = dot(p, p), inner = square + major2 - minor2, up = dot(p, axis);
+    const Pair value = inner * inner - Pair(4) * major2 * (square - up * up / dot(axis, axis));
+    const dvec3 at(p);
+    const double forward = glm::dot(at, direction),
+                 slope = 4 * forward * double(inner) -
+                         8 * double(major2) * (forward - glm::dot(at, unit) * glm::dot(direction, unit));
+    const double by = double(value) / slope;
+    if (!(std::abs(by) * glm::length(direction) < 0x1p-30 * torus.minor_radius)) return first;
+    t = t - by;
+  }
+  return t;
+}
+
+}  // namespace
+
+Crossings crossings(const Line& line, const Torus& t) {
+  const LineNear near(t.center, line);
+  Crossings found;
+  if (near.misses(t.major_radius + t.minor_radius)) return found;
+  Ideal about = ideal(t);
+  about.center = dvec3(0);
+  for (const auto& at : crossings_of({dvec3(near.from()), line.direction}, about))
+    found.add(near.line_t(improved(at.t, near, t)));
+  return found;
+}
+
+NearestOn nearest_on(const Torus& t, const dvec3& point) {
+  const Ideal torus = ideal(t);
+  const dvec3 on_circle = t.center + torus.major * unit_across(torus.axis, point - t.center);
+  const dvec3 way = point - on_circle;
+  const dvec3 normal = way == dvec3(0) ? torus.axis : safe_normalize(way);
+  return {std::abs(from_circle(torus, point) - torus.minor), on_circle + torus.minor * normal};
 }
 
 }  // namespace kdray::primitives

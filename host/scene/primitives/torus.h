@@ -65,6 +65,10 @@ std::array<float, KDRAY_TORUS_ROWS - 1> rows_of(const layout::Torus& t);
 dvec3 normal_at(const layout::Torus& t, const dvec3& point);
 Crossings crossings(const Line& line, const layout::Torus& t);
 double distance_to(const layout::Torus& t, const dvec3& point);
+// In a scene of doubles.
+dvec3 normal_at(const Torus& t, const dvec3& point);
+Crossings crossings(const Line& line, const Torus& t);
+NearestOn nearest_on(const Torus& t, const dvec3& point);
 
 // For `kdray verify`.
 constexpr bool has_outline(const TorusGeometry&) {

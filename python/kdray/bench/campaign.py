@@ -1,9 +1,9 @@
 """A campaign: random scenes, and whatever kdray answers wrongly about one; a folder is its ledger.
 
 A unit is a seed, which its scene, scale and rays come from. `kdray verify` traces the scene by every walk. Then rays
-that begin outside are put to it by each form of question, of floats and, for meshes, of doubles: the forms have to
-agree, and counts to be even where surfaces are closed. Others begin on meshes (`leaving`). Of the doubles a sample is
-held against exact arithmetic.
+that begin outside are put to it by each form of question, of floats and of doubles: the forms have to agree, and
+counts to be even where surfaces are closed. Others begin on meshes (`leaving`). Of meshes of doubles a sample is held
+against exact arithmetic.
 
 The ledger has a file for each unit: whoever creates it, empty, takes the unit, and replaces it by a line of JSON when
 that is finished. So any number of processes share a folder, and a run goes on where another ended.
@@ -142,9 +142,7 @@ def run(unit: Unit) -> dict[str, Any]:
         file = pathlib.Path(folder) / "unit.json"
         file.write_text(json.dumps({"kdray": 1, "objects": unit.objects}))
         version, traced = _verify(file, len(unit.rays), found)
-        kinds: list[tuple[str, type[np.floating[Any]]]] = [("float", np.float32)]
-        if unit.mesh is not None:
-            kinds.append(("double", np.float64))
+        kinds: tuple[tuple[str, type[np.floating[Any]]], ...] = ("float", np.float32), ("double", np.float64)
         sampled = 0
         for geometry, dtype in kinds:
             scene = load(file, geometry=geometry)
