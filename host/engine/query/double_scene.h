@@ -61,7 +61,7 @@ class DoubleScene {
     double u, v;
   };
   // Of what lies within `most` of the place; of several at one distance the one with the lowest number. All
-  // in the scene's space.
+  // in the scene's space. (double_nearest.cpp)
   std::optional<Nearest> nearest(const dvec3& place, double most) const;
 
  private:
