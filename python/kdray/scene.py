@@ -93,10 +93,10 @@ class Scene:
     counts in multiples of the direction. (Of hits in the start point itself, t = 0, `count_hits` and `all_hits` know
     where t_min is 0.)
 
-    With ``geometry="double"`` a scene answers for its vertices and shapes as they were given: all questions are decided
-    as exact arithmetic does (of shapes to 2^-96 of their size), and t of float64 rays is the nearest float64 but for its
-    last place. That takes up to a few times as long, and instances take the memory of copies. Pictures are of the
-    vertices rounded to floats, as all is otherwise.
+    With ``geometry="double"`` a scene answers for its vertices and shapes as they were given: all questions are
+    decided as exact arithmetic does (of shapes to 2^-96 of their size), and t of float64 rays is the nearest float64
+    but for its last place. That takes up to a few times as long, and instances take the memory of copies. Pictures are
+    of the vertices rounded to floats, as all is otherwise.
 
     A scene can be copied and pickled; it then holds its arrays, or the name of the file that it was read from.
 
