@@ -65,7 +65,7 @@ class Hits(_Columns):
     geometry = _column("geometry", "int32: the geometry's id; -1 for a miss.")
     primitive = _column("primitive", "int32: the number within the geometry, from 0; -1 for a miss.")
     instance = _column("instance", "int32: the number among the geometry's instances; -1 where it isn't of such.")
-    u = _column("u", "The weight of a triangle's second corner; of cones, the share of the axis. float32, see `v`.")
+    u = _column("u", "The weight of a triangle's second corner; of cones, the share of the axis. Of the type of `v`.")
     v = _column("v", 'The weight of a triangle\'s third corner: float32, or as t where geometry is "double" or "auto".')
     normal = _column("normal", "(..., 3) of unit length, of the surface itself; 0 for a miss.")
 

@@ -94,9 +94,9 @@ class Scene:
     where t_min is 0.)
 
     With ``geometry="double"`` a scene answers for its vertices and shapes as they were given: all questions are
-    decided as exact arithmetic does (of shapes to 2^-96 of their size), and t of float64 rays is the nearest float64
-    but for its last place. That takes up to a few times as long, and instances take the memory of copies. Pictures are
-    of the vertices rounded to floats, as all is otherwise.
+    decided as exact arithmetic does (of shapes to 2^-96 of their size, of what all but touches a torus to 2^-50), and t
+    of float64 rays is the nearest float64 but for its last place. That takes up to a few times as long, and instances
+    take the memory of copies. Pictures are of the vertices rounded to floats, as all is otherwise.
 
     A scene can be copied and pickled; it then holds its arrays, or the name of the file that it was read from.
 
@@ -237,7 +237,9 @@ class Scene:
         """Adds shapes of any kind: ``add_shapes("spheres", centers=..., radii=...)`` is what `add_spheres` does.
 
         `kind` is a kind's plural, and each of its fields an array of that name: vectors (n, 3), numbers (n,) or one
-        for all. Raises UsageError that names what there is.
+        for all. There are spheres (centers, radii), cones (bases, base_radii, apexes, apex_radii), discs (centers,
+        normals, radii), tori (centers, axes, major_radii, minor_radii) and capsules (starts, ends, radii). Raises
+        UsageError that names what there is.
         """
         return self._add_shapes(kind, arrays, name, mask, material, prototype)
 

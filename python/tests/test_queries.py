@@ -333,6 +333,21 @@ def test_double_geometry_keeps_to_the_rays_type_and_goes_with_copies(speck, tmp_
     assert kdray.load(file, geometry="double").closest_hit(*ray).t == t
 
 
+@pytest.mark.parametrize("n", [500, 2**15])  # the host's alone, and the device's first
+def test_float32_rays_of_double_geometry_find_what_comes_after_a_hit(ball_mesh, n):
+    random = np.random.default_rng(7)
+    scene = kdray.Scene(geometry="double")
+    vertices, triangles = ball_mesh
+    scene.add_mesh(vertices + random.uniform(-1e-9, 1e-9, vertices.shape), triangles)
+    scene.add_spheres([[0.1, 0.2, 0.3]], 0.4)
+    origins = random.uniform(-3, 3, (n, 3)).astype(np.float32)
+    directions = (random.uniform(-0.5, 0.5, (n, 3)) - origins).astype(np.float32)
+    first = scene.closest_hit(origins, directions)
+    assert np.isfinite(first.t).mean() > 0.5
+    assert (scene.closest_hit(origins, directions, t_min=first.t).t > first.t).all(where=np.isfinite(first.t))
+    assert not scene.any_hit(origins, directions, t_max=first.t).any()
+
+
 def test_double_geometry_is_that_of_shapes_as_well():
     with pytest.raises(kdray.UsageError, match='geometry is "float", "double" or "auto", not'):
         kdray.Scene(geometry="float64")

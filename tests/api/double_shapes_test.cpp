@@ -333,6 +333,44 @@ TEST_P(DoubleShapes, ConesMayBeFarWiderThanTheyAreHigh) {
   holds(list, aimed(list, 600, 1));
 }
 
+// Exactly through the tip: a line that is steeper than the cone crosses it there once, others never alone.
+TEST_P(DoubleShapes, ConesAreCrossedOnceThroughTheirTip) {
+  SCOPED_TRACE(kSeed);
+  std::uniform_int_distribution<int> whole(-9, 9);
+  const auto any_whole = [&] {
+    return Point{double(whole(random_)), double(whole(random_)), double(whole(random_))};
+  };
+  std::size_t n_steep = 0;
+  for (int i = 0; i < 300; ++i) {
+    SCOPED_TRACE(i);
+    const Point tip = any_whole(), axis = any_whole(), way = any_whole();
+    const auto times = [](const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
+    const double length2 = times(axis, axis), along = times(axis, way), radius = 1 + 4 * (i % 7);
+    if (length2 == 0 || along == 0) continue;
+    const Point base = moved(tip, -1, axis);
+    Scene scene;
+    const std::vector<double> wide_end{radius}, tip_end{0};
+    i % 2 == 0 ? scene.add_cones({Points(&base[0], 1), Points(&tip[0], 1), wide_end, tip_end})
+               : scene.add_cones({Points(&tip[0], 1), Points(&base[0], 1), tip_end, wide_end});
+    scene.commit(options());
+    const double wide =
+        (times(way, way) * length2 - along * along) * length2 - radius * radius * along * along;
+    const Point origin = moved(tip, -2, way);
+    std::uint32_t count = 0;
+    double t = 0;
+    scene.count({Points(&origin[0], 1), Points(&way[0], 1)}, {&count, 1});
+    scene.closest({Points(&origin[0], 1), Points(&way[0], 1)}, {.t = {&t, 1}});
+    if (wide >= 0) {
+      EXPECT_TRUE(wide == 0 || count % 2 == 0) << count;
+      continue;
+    }
+    ++n_steep;
+    EXPECT_EQ(count, 1);
+    EXPECT_EQ(t, 2);
+  }
+  EXPECT_GT(n_steep, 50);
+}
+
 TEST_P(DoubleShapes, MayLieAmongTriangles) {
   SCOPED_TRACE(kSeed);
   const Point center{1e3, 2e3, -7e2};

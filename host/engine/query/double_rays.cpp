@@ -35,8 +35,8 @@ const char* DoubleRays::fault(std::size_t i) const {
 
 std::optional<DoubleScene::Question> DoubleRays::question(std::size_t i, std::size_t place) const {
   if (rays_->mask(i) == 0 || fault(i) != nullptr) return std::nullopt;
-  const auto ray =
-      context_->frame.double_ray(rays_->origin(i), rays_->direction(i), rays_->t_min(i), rays_->t_max(i));
+  const auto ray = context_->frame.double_ray(rays_->origin(i), rays_->direction(i), rays_->double_t_min(i),
+                                              rays_->double_t_max(i));
   if (!ray) return std::nullopt;
   return DoubleScene::Question{*ray, rays_->mask(i), place};
 }

@@ -123,7 +123,8 @@ HWY_EXPORT(FilterAll);
 namespace {
 
 layout::QueryRay filter_ray(const LocalFrame& frame, const RayArrays& rays, std::size_t i) {
-  const auto ray = frame.double_ray(rays.origin(i), rays.direction(i), rays.t_min(i), rays.t_max(i));
+  const auto ray =
+      frame.double_ray(rays.origin(i), rays.direction(i), rays.double_t_min(i), rays.double_t_max(i));
   if (!ray) return kNoRay;
   const dvec3 start = ray->place_at_start();
   layout::QueryRay out;
@@ -156,8 +157,8 @@ class EightRows {
       const std::size_t ray = i + std::min(lane, n - 1);
       if (!all || !are_origins_dense_) put(origins_ + 3 * lane, rays_.origin(ray));
       if (!all || !are_directions_dense_) put(directions_ + 3 * lane, rays_.direction(ray));
-      if (!rays.t_min.empty()) t_min_[lane] = rays_.t_min(ray);
-      if (!rays.t_max.empty()) t_max_[lane] = rays_.t_max(ray);
+      if (!rays.t_min.empty()) t_min_[lane] = rays_.double_t_min(ray);
+      if (!rays.t_max.empty()) t_max_[lane] = rays_.double_t_max(ray);
     }
     return {all && are_origins_dense_ ? rays.origins.first_of<const double>() + 3 * i : origins_,
             all && are_directions_dense_ ? rays.directions.first_of<const double>() + 3 * i : directions_,

@@ -47,6 +47,14 @@ RayArrays::RayArrays(const Rays& rays)
   check_size(rays.masks.size(), n_, "masks");
 }
 
+// Half way to the next float a double rounds to the even one of the two.
+double RayArrays::last_rounded_to(double t, int way) {
+  if (t == 0 || !std::isfinite(t)) return t;
+  const auto f = static_cast<float>(t);
+  const double next = std::nextafter(f, way * HUGE_VALF), half_way = 0.5 * (t + next);
+  return static_cast<float>(half_way) == f ? half_way : std::nextafter(half_way, t);
+}
+
 LocalFrame::LocalFrame(const scene::Geometry& geometry, double apart)
     : space_(geometry.space),
       lo_(0),

@@ -43,6 +43,14 @@ class RayArrays {
   }
   double t_min(std::size_t i) const { return value(rays_.t_min, i, 0); }
   double t_max(std::size_t i) const { return value(rays_.t_max, i, std::numeric_limits<double>::infinity()); }
+  // The same for t in double, which rays of floats are told rounded: what would be told as t_min, or as
+  // t_max, lies beyond them.
+  double double_t_min(std::size_t i) const {
+    return in_double_ || rays_.t_min.empty() ? t_min(i) : last_rounded_to(t_min(i), 1);
+  }
+  double double_t_max(std::size_t i) const {
+    return in_double_ || rays_.t_max.empty() ? t_max(i) : last_rounded_to(t_max(i), -1);
+  }
   std::uint32_t mask(std::size_t i) const {
     return rays_.masks.empty() ? 0xffffffffu : rays_.masks[rays_.masks.size() == 1 ? 0 : i][0];
   }
@@ -50,6 +58,8 @@ class RayArrays {
 
  private:
   static dvec3 vector(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
+  // The last double above (way: 1) or below (-1) a float that rounds to it; 0 and what is infinite stay.
+  static double last_rounded_to(double t, int way);
   static double value(const Values& values, std::size_t i, double none) {
     return values.empty() ? none : values[values.size() == 1 ? 0 : i][0];
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <utility>
 
@@ -223,6 +224,7 @@ template <class Real>
 struct Slanted {
   Vec<Real> unit;
   Real base_radius, slope, height;
+  bool has_tip = false;  // known to be one: an end's radius is 0
 };
 
 Slanted<double> slanted(const layout::Cone& c) {
@@ -234,7 +236,8 @@ Slanted<Real> slanted(const Cone& c) {
   Vec<Real> axis;
   for (int k = 0; k < 3; ++k) axis[k] = Real(c.apex[k]) - Real(c.base[k]);
   const Real height = length(axis);
-  return {axis / height, c.base_radius, (Real(c.apex_radius) - Real(c.base_radius)) / height, height};
+  return {axis / height, c.base_radius, (Real(c.apex_radius) - Real(c.base_radius)) / height, height,
+          c.base_radius == 0 || c.apex_radius == 0};
 }
 
 // Of a*t^2 + 2*b*t + q.
@@ -255,7 +258,9 @@ Pair discriminant(const Pair&, const Pair&, const Pair&, const Vec<Pair>& across
 }
 
 // About the place of the line that is nearest to the middle of the axis, so that no term is larger than the
-// cone makes it. (0 <= s <= height keeps the other nappe out too: its radius is negative.) from: the base.
+// cone makes it. (0 <= s <= height keeps the other nappe out too: its radius is negative. Beside a tip
+// rounding could take a crossing for one of the other nappe: a line that is steeper than the cone crosses
+// each of them once, others cross one of them twice.) from: the base.
 template <class Real, class Add>
 void cross(const Vec<Real>& from, const Vec<Real>& direction, const Slanted<Real>& cone, const Add& add) {
   using std::copysign, std::sqrt;
@@ -269,13 +274,23 @@ void cross(const Vec<Real>& from, const Vec<Real>& direction, const Slanted<Real
   const Real broad = length(moving), far = length(across);
   const Real a = (broad - growing) * (broad + growing), b = dot(across, moving) - radius * growing,
              q = (far - radius) * (far + radius);
-  const Real root = sqrt(discriminant(a, b, q, across, moving, radius, growing));
-  if (!(root > none)) return;
+  const bool is_steep = cone.has_tip && a < none;
+  Real inside = discriminant(a, b, q, across, moving, radius, growing);
+  if (is_steep) inside = std::max(inside, none);
+  const Real root = sqrt(inside);
+  if (!(root > none) && !is_steep) return;
   const Real sum = -(b + copysign(root, b));
-  Real roots[2] = {q / sum, sum / a};
+  Real roots[2] = {is_steep && sum == none ? none : q / sum, sum / a};
   if (roots[0] > roots[1]) std::swap(roots[0], roots[1]);
+  if (is_steep) {
+    const bool is_second = growing * roots[0] < growing * roots[1];
+    roots[is_second ? 0 : 1] = std::numeric_limits<double>::quiet_NaN();  // the other nappe's
+  } else if (cone.has_tip && radius - growing * (b / a) < none) {
+    return;
+  }
   for (const Real& t : roots) {
-    const Real at = s + t * ds;
+    Real at = s + t * ds;
+    if (cone.has_tip) at = slope < none ? std::min(at, height) : std::max(at, none);
     if (at >= none && at <= height) add(middle + t, at / height);
   }
 }
