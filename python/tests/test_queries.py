@@ -333,6 +333,18 @@ def test_double_geometry_keeps_to_the_rays_type_and_goes_with_copies(speck, tmp_
     assert kdray.load(file, geometry="double").closest_hit(*ray).t == t
 
 
+def test_a_cone_is_crossed_once_beside_its_tip():
+    random = np.random.default_rng(8)
+    scene = kdray.Scene()
+    scene.add_cones([[0, 0, 0]], 1, [[0, 0, 2]], 0)
+    origins = random.normal(size=(20000, 3)) * (10 ** random.uniform(-7, -3, 20000))[:, None] + [0, 0, 5]
+    directions = np.tile([0, 0, -1.0], (20000, 1))
+    directions[::2, :2] += random.uniform(-1e-6, 1e-6, (10000, 2))
+    rays = origins.astype(np.float32), directions.astype(np.float32)
+    assert np.isfinite(scene.closest_hit(*rays).t).all()
+    assert (scene.count_hits(*rays) == 1).all()
+
+
 @pytest.mark.parametrize("n", [500, 2**15])  # the host's alone, and the device's first
 def test_float32_rays_of_double_geometry_find_what_comes_after_a_hit(ball_mesh, n):
     random = np.random.default_rng(7)
