@@ -8,6 +8,7 @@ values, or less than a row, as in what `np.broadcast_to` gives, where all rows a
 from __future__ import annotations
 
 import math
+import operator
 from typing import Any
 
 import numpy as np
@@ -122,15 +123,19 @@ def masks(values: ArrayLike, name: str = "mask") -> tuple[Array, Shape]:
     if array.dtype == np.uint32:
         return _side_by_side(array.reshape(-1)), array.shape
     if array.dtype.kind not in "iu" or (array.size and (array.min() < -(2**31) or array.max() >= 2**32)):
-        raise errors.InputError(f"{name}: a mask has 32 bits")
+        raise errors.InputError(f"{name}: masks are whole numbers of 32 bits")
     return array.reshape(-1).astype(np.int64).astype(np.uint32), array.shape
 
 
 def mask_bits(mask: int) -> int:
     """A geometry's mask as a whole number of 32 bits; -1 is all of them."""
-    if not -(2**31) <= mask < 2**32:
-        raise errors.InputError(f"mask: {mask} has more than 32 bits")
-    return int(mask) & 0xFFFFFFFF
+    try:
+        whole = operator.index(mask)
+    except TypeError:
+        raise errors.InputError(f"mask: {mask!r} is no whole number") from None
+    if not -(2**31) <= whole < 2**32:
+        raise errors.InputError(f"mask: {whole} has more than 32 bits")
+    return whole & 0xFFFFFFFF
 
 
 def for_writing(array: Array, shape: Shape, types: tuple[type, ...], name: str) -> Array:

@@ -255,8 +255,8 @@ def test_an_empty_scene_has_nothing_to_hit():
         ([[0, 0, 1j]], [0, 0, 1], {}, "origins: numbers are wanted"),
         ([[0, 0, 0]] * 2, [[0, 0, 1]] * 3, {}, r"directions has shape \(3,\) where origins has \(2,\)"),
         ([[0, 0, 0]] * 2, [0, 0, 1], {"t_min": [0] * 3}, r"t_min has shape \(3,\)"),
-        ([[0, 0, 0]], [0, 0, 1], {"mask": [2**32]}, "mask: a mask has 32 bits"),
-        ([[0, 0, 0]], [0, 0, 1], {"mask": [0.5]}, "mask: a mask has 32 bits"),
+        ([[0, 0, 0]], [0, 0, 1], {"mask": [2**32]}, "mask: masks are whole numbers of 32 bits"),
+        ([[0, 0, 0]], [0, 0, 1], {"mask": [0.5]}, "mask: masks are whole numbers of 32 bits"),
     ],
 )
 def test_what_is_wrong_is_named(ball, origins, directions, named, message):
@@ -331,6 +331,13 @@ def test_double_geometry_keeps_to_the_rays_type_and_goes_with_copies(speck, tmp_
     lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in speck[0].tolist()]
     file.write_text("\n".join([*lines, *(f"f {a} {b} {c}" for a, b, c in (speck[1] + 1).tolist())]))
     assert kdray.load(file, geometry="double").closest_hit(*ray).t == t
+
+
+@pytest.mark.parametrize("mask", [1.5, "all", None])
+def test_masks_of_geometries_are_whole_numbers(mask):
+    scene = kdray.Scene()
+    with pytest.raises(kdray.InputError, match=r"mask: .* is no whole number"):
+        scene.add_spheres([[0, 0, 0]], 1, mask=mask)
 
 
 def test_a_cone_is_crossed_once_beside_its_tip():
