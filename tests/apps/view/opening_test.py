@@ -36,8 +36,13 @@ class Served:
         self.address = self.process.stdout.readline().strip()
         assert self.address, self.process.stderr.read()
         self.said = ""
-        while "Ctrl-C ends this" not in self.said:
-            self.said += self.process.stderr.readline()
+        self.wait_for("Ctrl-C ends this")
+
+    def wait_for(self, words):
+        while words not in self.said:
+            line = self.process.stderr.readline()
+            assert line, self.said
+            self.said += line
 
     def __enter__(self):
         return self
@@ -76,8 +81,7 @@ def opens(folder):
     only_this = folder / "nothing"
     only_this.mkdir()
     with Served("--open", PATH=str(only_this)) as served:
-        time.sleep(0.2)
-    assert "there is no xdg-open here" in served.said, served.said
+        served.wait_for("there is no xdg-open here")
     print("ok  --open without xdg-open")
 
 
