@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <stdexcept>
 #include <string>
 
 #include "scene/gltf_samples.h"
@@ -171,6 +172,22 @@ TEST_F(InstancesOfJson, AreRefusedInOneLine) {
   EXPECT_NE(refused(R"([{"scale": [1, 1, 1000]}])").find("stretches"), std::string::npos);
   EXPECT_NE(refused(R"([{"move": [1, 0, 0]}])").find("unknown key"), std::string::npos);
   EXPECT_NE(refused(R"([{"material": "blue"}])").find("no material 'blue'"), std::string::npos);
+}
+
+// Programs have their rotations in floats, files to six digits.
+TEST(CopiesOfShapes, MayBeTurnedByRoundedRotations) {
+  Scene s;
+  s.spheres.push_back({.center = {1, 2, 3}, .radius = 2});
+  s.cones.push_back({.base = {0, 0, 0}, .apex = {0, 0, 4}, .base_radius = 1, .apex_radius = 0.5});
+  dmat4 turn = translation({5, 0, 0}) * rotation(glm::normalize(dvec3(1, 2, -3)), 0.7) * scaling(dvec3(3));
+  for (int column = 0; column < 3; ++column)
+    for (int row = 0; row < 3; ++row) turn[column][row] = std::round(turn[column][row] * 1e6) * 1e-6;
+  apply_transform(turn, s);
+  EXPECT_LT(glm::length(s.spheres[0].center - dvec3(turn * glm::dvec4(1, 2, 3, 1))), 1e-12);
+  EXPECT_NEAR(s.spheres[0].radius, 6, 1e-5);
+  EXPECT_NEAR(s.cones[0].apex_radius, 1.5, 1e-5);
+  turn[0][0] += 1e-4;
+  EXPECT_THROW(apply_transform(turn, s), std::domain_error);
 }
 
 }  // namespace

@@ -21,8 +21,11 @@ dvec3 transform_point(const dmat4& m, const dvec3& p) {
   return dvec3(m * glm::dvec4(p, 1));
 }
 
-// Returns the factor by which a similarity (rotation, mirror, uniform scale) enlarges; throws for any other
-// matrix.
+// How far from a similarity (rotation, mirror, uniform scale) a matrix may be and be taken for one: rotations
+// in floats, or written to six digits, are within it.
+constexpr double kNotQuite = 0x1p-18;
+
+// Returns the factor by which a similarity enlarges; throws for any other matrix.
 double similarity_factor(const dmat3& m, const std::string& what) {
   const double factor = glm::length(m[0]);
   const dmat3 square = glm::transpose(m) * m;
@@ -32,7 +35,7 @@ double similarity_factor(const dmat3& m, const std::string& what) {
       worst = std::max(worst, std::abs(square[i][j] - (i == j ? factor * factor : 0)));
     }
   }
-  if (!(worst <= 1e-9 * factor * factor)) {
+  if (!(worst <= kNotQuite * factor * factor)) {
     throw std::domain_error(what + " can be moved, turned and scaled alike along all axes only");
   }
   return factor;
