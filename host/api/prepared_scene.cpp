@@ -59,8 +59,8 @@ const std::vector<std::string>& PreparedScene::warnings() const {
 PreparedScene PreparedScene::seen(const View& view, int width, int height) const {
   return PreparedScene(prepare::seen(*prepared_, view_of(view), aspect_of(settings(), width, height)));
 }
-PreparedScene PreparedScene::in_studio() const {
-  return PreparedScene(prepare::in_studio(*prepared_));
+PreparedScene PreparedScene::in_studio(bool instead) const {
+  return PreparedScene(prepare::in_studio(*prepared_, instead));
 }
 PreparedScene PreparedScene::coverage() const {
   return PreparedScene(prepare::coverage_of(*prepared_));

@@ -325,8 +325,13 @@ std::optional<Extent> Scene::extent() const {
   if (box.empty()) return std::nullopt;
   return Extent{{box.lo.x, box.lo.y, box.lo.z}, {box.hi.x, box.hi.y, box.hi.z}};
 }
-const std::vector<std::string>& Scene::warnings() const {
-  return impl_->base.warnings;
+std::vector<std::string> Scene::warnings() const {
+  std::vector<std::string> all = impl_->base.warnings;
+  const std::lock_guard lock(impl_->mutex);
+  if (!impl_->committed) return all;
+  for (const std::string& warning : impl_->committed->scene().warnings())
+    if (std::ranges::find(all, warning) == all.end()) all.push_back(warning);
+  return all;
 }
 const scene::Scene& Scene::model() const {
   return impl_->model();

@@ -14,12 +14,12 @@ from . import _core
 class Picture(np.ndarray[Any, np.dtype[np.float32]]):
     """Linear RGB, float32, height x width x 3, row 0 at the top; an array like any other.
 
-    `channels` holds what was asked for beside the colour, by name, each height x width.
     `warnings` says what went wrong on the way; the picture is right all the same.
     """
 
-    channels: dict[str, npt.NDArray[np.float32]]
     warnings: list[str]
+    _channels: dict[str, npt.NDArray[np.float32]]
+    _laid: tuple[Any, ...]  # the shape and strides that the channels fit
 
     def __new__(
         cls,
@@ -29,14 +29,23 @@ class Picture(np.ndarray[Any, np.dtype[np.float32]]):
     ) -> Picture:
         """Pixels (height, width, 3), linear; for `save` of whatever a program has computed."""
         picture = np.asarray(pixels, dtype=np.float32).view(cls)
-        picture.channels = channels or {}
+        picture._channels = channels or {}
+        picture._laid = (picture.shape, picture.strides)
         picture.warnings = warnings or []
         return picture
 
     def __array_finalize__(self, of: Any) -> None:
-        # What is cut out of a picture has none of its channels: they would no longer fit.
-        self.channels = getattr(of, "channels", {}) if of is not None and of.shape == self.shape else {}
+        self._channels = getattr(of, "_channels", {})
+        self._laid = getattr(of, "_laid", ())
         self.warnings = getattr(of, "warnings", [])
+
+    @property
+    def channels(self) -> dict[str, npt.NDArray[np.float32]]:
+        """What was asked for beside the colour, by name, each height x width.
+
+        What is cut out of a picture, or turned, has none: they would no longer fit.
+        """
+        return self._channels if (self.shape, self.strides) == self._laid else {}
 
     def __reduce__(self) -> Any:
         return Picture, (np.asarray(self), self.channels, self.warnings)
@@ -53,6 +62,8 @@ class Picture(np.ndarray[Any, np.dtype[np.float32]]):
     def _pixels(self) -> npt.NDArray[np.float32]:
         if self.ndim != 3 or self.shape[2] != 3:
             raise ValueError(f"a picture is height x width x 3, not {self.shape}")
+        if self.size == 0:
+            raise ValueError(f"a picture of {self.shape[1]} x {self.shape[0]} has no pixels")
         return np.ascontiguousarray(np.asarray(self))
 
     def _repr_png_(self) -> bytes | None:

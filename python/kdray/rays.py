@@ -23,6 +23,8 @@ def pinhole_rays(camera: Camera, width: int, height: int, *, dtype: npt.DTypeLik
     """
     if width < 1 or height < 1:
         raise errors.UsageError(f"a picture of {width} x {height} has no pixels")
+    if not camera.ortho_width and not 0 < camera.fov < 180:
+        raise errors.UsageError(f"a camera's angle of view is above 0 and below 180 degrees, not {camera.fov}")
     origin, forward, right, up = _frame(camera)
     x = (np.arange(width) + 0.5) / width * 2 - 1
     y = 1 - (np.arange(height) + 0.5) / height * 2
@@ -65,6 +67,8 @@ def lidar_rays(
     """
     place, _ = vectors(positions, "positions")
     if azimuths is None:
+        if steps < 1 or steps != int(steps):
+            raise errors.UsageError(f"steps is a whole number from 1 on, not {steps}")
         azimuths = np.arange(steps) * (360.0 / steps)
     a = np.radians(np.asarray(azimuths, np.float64).reshape(-1))
     e = np.radians(np.asarray(elevations, np.float64).reshape(-1))

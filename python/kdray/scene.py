@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from . import _arrays, _core, _drivers, errors
 from ._arrays import Array, ArrayLike, RayArrays
+from ._calls import tell_in_one_line
 from ._pixels import pixels_of
 from ._results import FLOATS, Rows, as_rows, hit_columns, in_parts, known, result_of, type_of, width_of
 from .hits import AllHits, ClosestPoints, Hits
@@ -343,7 +344,7 @@ class Scene:
     def enable(self, id: int, enabled: bool = True) -> None:
         """Shows a geometry again, or hides it (`enabled=False`), without losing it."""
         with self._lock:
-            self._core.enable(id, enabled)
+            self._core.enable(id, bool(enabled))
             self._changed = True
 
     def set_mask(self, id: int, mask: int) -> None:
@@ -512,7 +513,7 @@ class Scene:
         It is equirectangular: its top lies at `up`, its middle at -z, turned about `up` by `turn` degrees. What
         it shows is multiplied by `strength`.
         """
-        name = os.fspath(file)
+        name = os.path.abspath(os.fspath(file))
         with self._lock:
             self._core.set_environment(name, up, turn, strength)
             self._sky = ("environment", name, tuple(up), turn, strength)
@@ -760,7 +761,11 @@ class Scene:
         "instance", "cost", "samples", "queue".
         `min_weight`: rays that change a pixel by less are left out; 0 traces all.
         """
-        named = list(channels)
+        named = [channels] if isinstance(channels, str) else list(channels)
+        if min_weight is not None and not 0 <= min_weight <= 1:
+            raise errors.UsageError(f"min_weight is from 0 to 1, not {min_weight}")
+        if adaptive != 0 and not 1e-6 <= adaptive <= 1e6:
+            raise errors.UsageError(f"adaptive is True, False or an error from 1e-6 to 1e6, not {adaptive}")
         if named or precision == "double":
             self._with_binary_form()
         width, height = size
@@ -915,6 +920,9 @@ def set_texture_cache(size: int) -> None:
         raise errors.UsageError(f"a texture cache of {size} bytes; it may have 0 or more")
     _core.set_texture_cache(size)
 
+
+# Those left out are called the most, and take arrays, which are looked at before.
+tell_in_one_line(Scene, but={"closest_hit", "any_hit", "count_hits"})
 
 # ---- Small things
 

@@ -161,3 +161,29 @@ def test_colours_may_be_written_as_the_web_does(lit):
     scene.set_gradient([-1, 1], ["navy", (0, 0, 1)])
     with pytest.raises(kdray.UsageError, match="'skybleu'"):
         scene.set_background("skybleu")
+
+
+def test_a_turned_picture_has_no_channels_that_do_not_fit(lit):
+    picture = lit.render(kdray.Camera((0, 1, 5)), (8, 8), channels="depth", look="plain")
+    assert set(picture.channels) == {"depth"}
+    assert set((picture * 0.5).channels) == {"depth"} and set(picture[:].channels) == {"depth"}
+    assert np.flipud(picture).channels == picture[::-1].channels == picture.transpose(1, 0, 2).channels == {}
+    with pytest.raises(ValueError, match="no pixels"):
+        kdray.Picture(np.zeros((0, 4, 3))).save("a.png")
+
+
+def test_an_environment_is_found_from_elsewhere(tmp_path, monkeypatch):
+    (tmp_path / "sky.hdr").write_bytes(b"#?RADIANCE\n\n-Y 1 +X 1\n" + bytes([128, 64, 0, 129]))
+    monkeypatch.chdir(tmp_path)
+    scene = kdray.Scene()
+    scene.set_environment("sky.hdr")
+    monkeypatch.chdir("/")
+    assert (scene.copy().render(kdray.Camera((0, 0, 1)), (1, 1)) == [1, 0.5, 0]).all()
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"adaptive": -1}, {"adaptive": float("nan")}, {"min_weight": -1}, {"min_weight": float("nan")}]
+)
+def test_options_out_of_range_are_refused(lit, wrong):
+    with pytest.raises(kdray.errors.UsageError, match=next(iter(wrong))):
+        lit.render(size=(2, 2), **wrong)

@@ -422,3 +422,52 @@ def test_instances_of_doubles_are_where_their_transforms_bring_them(ball_mesh):
     nearest = placed.closest_point(there + [0, 0, 5])
     assert (nearest.geometry, nearest.instance) == (ball, 1) and abs(nearest.distance - hits.t[1]) < 1e-9
     assert placed.contains([there, there + [0, 0, 5]]).tolist() == [True, False]
+
+
+def test_a_whole_line_is_asked_for_by_infinities(ball, rng):
+    origins, directions = rng.uniform(-2, 2, (500, 3)), rng.normal(size=(500, 3))
+    for kind in (np.float32, np.float64):
+        o, d = origins.astype(kind), directions.astype(kind)
+        for t_min in (-np.inf, np.full(500, -np.inf, kind)):
+            counts = ball.count_hits(o, d, t_min=t_min)
+            np.testing.assert_array_equal(counts, ball.count_hits(o, d, t_min=-1e6))
+            assert (counts % 2 == 0).all() and counts.max() == 2
+            np.testing.assert_array_equal(ball.any_hit(o, d, t_min=t_min), counts > 0)
+            first = ball.closest_hit(o, d, t_min=t_min)
+            np.testing.assert_allclose(first.t, ball.closest_hit(o, d, t_min=-1e6).t, atol=1e-6)
+            assert ball.all_hits(o, d, t_min=t_min).t.size == counts.sum()
+
+
+def test_nearest_points_of_doubles_have_weights_in_double():
+    scene = kdray.Scene(geometry="double")
+    scene.add_mesh([[0, 0, 0], [3, 0, 0], [0, 7, 0]], [[0, 1, 2]])
+    near = scene.closest_point([[1.0, 1, 1]])
+    assert near.u[0] == pytest.approx(1 / 3, abs=1e-15) and near.v[0] == pytest.approx(1 / 7, abs=1e-15)
+
+
+def test_what_vanishes_in_floats_is_told(rng):
+    scene = kdray.Scene()
+    scene.add_mesh([[-1e4, -1e4, 0], [1e4, -1e4, 0], [1e4, 1e4, 0]], [[0, 1, 2]])
+    assert scene.commit().warnings == []
+    facets = rng.uniform(5e3, 9e3, (1000, 1, 3)) + rng.uniform(-1e-4, 1e-4, (1000, 3, 3))
+    scene.add_mesh(facets.reshape(-1, 3), np.arange(3000).reshape(-1, 3))
+    (warning,) = [w for w in scene.commit().warnings if "single precision" in w]
+    assert "too small for it to see" in warning and "double geometry" in warning
+
+
+@pytest.mark.parametrize(
+    "ask",
+    [
+        lambda s: s.info(-1),
+        lambda s: s.remove(-1),
+        lambda s: s.enable("a"),
+        lambda s: s.closest_point([[0, 0, 0]], radius=None),
+        lambda s: s.commit(3),
+        lambda s: s.render(size=(16.5, 16)),
+        lambda s: s.add_mesh([[0, 0, 0]], [[0, 0, 0]], material="red"),
+    ],
+)
+def test_arguments_of_wrong_types_are_told_in_a_line(ball, ask):
+    with pytest.raises(TypeError) as told:
+        ask(ball)
+    assert "\n" not in str(told.value) and "_core" not in str(told.value) and "kdray.Scene." in str(told.value)

@@ -261,3 +261,27 @@ def test_wrong_materials():
     with pytest.raises(kdray.errors.InputError, match="alpha"):
         scene.add_material(kdray.Material(alpha="mask"))
     assert scene.add_material(kdray.Material(picture=0)) == 1
+
+
+class PillowImage:
+    """As Pillow's are: bytes of a palette or of other colours, until they are converted."""
+
+    def __init__(self, mode, pixels, converted=None, info=()):
+        self.mode, self.pixels, self.converted, self.info = mode, pixels, converted or {}, info
+
+    def convert(self, mode):
+        return PillowImage(mode, self.converted[mode])
+
+    def __array__(self, dtype=None, copy=None):
+        return self.pixels
+
+
+@pytest.mark.parametrize(
+    "mode, bytes_of, info",
+    [("P", 1, ()), ("P", 1, ("transparency",)), ("CMYK", 4, ()), ("HSV", 3, ()), ("YCbCr", 3, ()), ("RGB", 3, ())],
+)
+def test_images_of_pillow_show_their_colours(mode, bytes_of, info):
+    red = np.full((4, 4, 4 if info else 3), [255, 0, 0, 255][: 4 if info else 3], np.uint8)
+    raw = red if mode == "RGB" else np.full((4, 4, bytes_of), 17, np.uint8)
+    image = PillowImage(mode, raw, {"RGBA" if info else "RGB": red}, info)
+    np.testing.assert_array_equal(shown(square(pixels=image), 3), np.full((3, 3, 3), [1.0, 0, 0]))

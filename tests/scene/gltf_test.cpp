@@ -431,6 +431,20 @@ TEST(Gltf, ReadsAllCamerasInTheOrderOfTheirNodes) {
   EXPECT_TRUE(s.warnings.empty());
 }
 
+// glTF's cameras have a direction alone: what they look at is as far off as the scene's middle.
+TEST(Gltf, CamerasLookAtWhatLiesBeforeThem) {
+  GltfSample sample = square();
+  sample.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.5}}}}};
+  sample.json["nodes"] = {{{"mesh", 0}, {"children", {1, 2}}},
+                          {{"camera", 0}, {"translation", {3, 0.5, 7}}},
+                          {{"camera", 0}, {"translation", {0, 0, -7}}}};
+  const Scene s = read(sample);
+  ASSERT_EQ(s.cameras.size(), 2u);
+  EXPECT_LT(glm::length(s.cameras[0].at - dvec3(3, 0.5, 0)), 1e-12);
+  EXPECT_EQ(s.cameras[1].at, dvec3(0, 0, -8)) << "there is nothing before it";
+  EXPECT_EQ(s.camera->at, s.cameras[0].at);
+}
+
 TEST(Gltf, ReadsAndExposesLights) {
   GltfSample sample = square();
   sample.json["extensions"]["KHR_lights_punctual"]["lights"] = {

@@ -154,7 +154,7 @@ TEST(Json, NamesTheLineOfWhatIsNotJson) {
   EXPECT_EQ(refused("").substr(0, 18), "s.json:1: not JSON");
   EXPECT_EQ(refused("{\n\n\"objects\": [").substr(0, 18), "s.json:3: not JSON");
   EXPECT_EQ(refused("{\"ambient\": NaN}").substr(0, 18), "s.json:1: not JSON");
-  EXPECT_NE(refused("{\"ambient\": 1e999}").find("1e999"), std::string::npos);
+  EXPECT_NE(refused("{\"ambient\": 1e999}").find("s.json:1: 1e999 is beyond"), std::string::npos);
   EXPECT_NE(refused("{\"a\xff\": 1}").find("not JSON"), std::string::npos);
   refused(std::string(1'000'000, '['));
   EXPECT_EQ(refused("{\"objects\":\n" + std::string(5000, '[')),
@@ -259,7 +259,7 @@ TEST(Json, RefusesToIncludeItselfAndNamesBadParts) {
   };
   EXPECT_NE(include("s.json").find("/objects/0/file: a scene cannot include another .json"),
             std::string::npos);
-  EXPECT_NE(include("none.ply").find("none.ply: no such file"), std::string::npos);
+  EXPECT_NE(include("none.ply").find("/objects/0/file: no file "), std::string::npos);
   EXPECT_NE(include("bad.nff").find("bad.nff:2: expected a sphere's radius, found 'zero'"),
             std::string::npos);
 }

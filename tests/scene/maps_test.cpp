@@ -220,8 +220,9 @@ TEST(Maps, OfJsonOnAMeshFile) {
   const Scene s = checked(import_scene(file));
   EXPECT_EQ(maps_of(s, 0).base, maps_of(s, 1).base);
   EXPECT_EQ(s.texturing.texcoords[0].at(0).uv[1][0], 1);
-  ASSERT_EQ(s.warnings.size(), 1u);
-  EXPECT_SAYS(s.warnings[0], "has no texture coordinates");
+  ASSERT_EQ(s.warnings.size(), 2u);
+  EXPECT_SAYS(s.warnings[0], "/objects/0: shapes show one place");
+  EXPECT_SAYS(s.warnings[1], "has no texture coordinates");
 }
 
 TEST(Maps, OfAProgram) {

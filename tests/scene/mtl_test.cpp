@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/import/load.h"
 #include "scene/model/check_scene.h"
 #include "scene/scratch.h"
 
@@ -177,6 +178,29 @@ TEST(WhittedFromMtl, NeverSendsOnMoreLightThanItGets) {
     EXPECT_EQ(fault_of(m), nullptr);
     for (int c = 0; c < 3; ++c) EXPECT_LE(m.reflect[c] + m.transmit[c], 1.00001f) << "illum " << *mtl.illum;
   }
+}
+
+TEST(WhittedFromMtl, TakesWhatMayaWritesOfOpaqueSurfacesForOpaque) {
+  EXPECT_EQ(whitted("Kd 0.5 0.5 0.5\nTf 1 1 1\nNi 1\nillum 4").transmit, vec3(0));
+  EXPECT_EQ(whitted("Kd 0.5 0.5 0.5\nTf 1 1 1\nNi 1\nillum 4").diffuse, vec3(0.5f));
+  EXPECT_EQ(whitted("Tf 1 1 1\nNi 1.5\nillum 4").transmit, vec3(1));
+  EXPECT_EQ(whitted("Tf 0.5 0.5 0.5\nNi 1\nillum 4").transmit, vec3(0.5f));
+  EXPECT_EQ(whitted("Tf 1 1 1\nNi 1\nd 0.25\nillum 4").transmit, vec3(0.75f));
+}
+
+// `d 0` and `Tr 1` throughout are how exporters have written opaque; a glass body is glass.
+TEST(MaterialsOfObj, AreOpaqueWhereNothingWouldBeSeen) {
+  const test::ScratchFolder folder;
+  const auto transmit_of = [&](const std::string& mtl) {
+    folder.write("a.mtl", mtl);
+    const Scene s = read_obj(
+        "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl m\nf 1 2 3\nusemtl n\nf 1 2 3\n", folder / "a.obj");
+    EXPECT_EQ(s.warnings.size(), s.materials[0].transmit == vec3(0) ? 1u : 0u);
+    return std::array{s.materials[0].transmit.x, s.materials[1].transmit.x};
+  };
+  EXPECT_EQ(transmit_of("newmtl m\nTr 1\nnewmtl n\nd 0\n"), (std::array{0.0f, 0.0f}));
+  EXPECT_EQ(transmit_of("newmtl m\nTr 1\nnewmtl n\nd 0.5\n"), (std::array{1.0f, 0.5f}));
+  EXPECT_EQ(transmit_of("newmtl m\nTr 1\nNi 1.5\nillum 6\nnewmtl n\nd 0\n"), (std::array{1.0f, 1.0f}));
 }
 
 }  // namespace

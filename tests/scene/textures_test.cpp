@@ -143,7 +143,7 @@ TEST(Textures, OfObjWithoutItsPicture) {
   const auto file = folder.write(
       "a.obj",
       "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\nusemtl n\nf 1 2 3\n");
-  const Scene s = checked(import_scene(file));
+  const Scene s = checked(load(file));
   ASSERT_EQ(s.warnings.size(), 2u);
   EXPECT_SAYS(s.warnings[0], "a.obj: no picture 'gone.png'");
   EXPECT_SAYS(s.warnings[0], "(the picture is left out)");
@@ -302,6 +302,69 @@ TEST(Textures, OfPartsComesTogether) {
   expect_color(s, 1, 0, {1, 1, 1, 1});
   EXPECT_EQ(s.texturing.texcoords[0].at(3).uv[1][0], 1);
   EXPECT_EQ(s.texturing.texcoords[0].at(2).uv[1][0], 0);
+}
+
+// A mesh file keeps the coordinates that the JSON file's picture needs, whatever it says of pictures itself.
+TEST(Textures, OfJsonLieOnMeshesThatNameNone) {
+  const test::ScratchFolder folder;
+  folder.write("p.png", test::four_colors());
+  folder.write("plain.mtl", "newmtl m\nKd 1 0 0\n");
+  const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0.25 0\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\n";
+  folder.write("a.obj", square);
+  folder.write("b.obj", "mtllib plain.mtl\nusemtl m\n" + square);
+  folder.write(
+      "c.ply",
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float s\nproperty float t\nelement face 1\nproperty list uchar int vertex_indices\n"
+      "end_header\n0 0 0 0.25 0\n1 0 0 1 0\n1 1 0 1 1\n3 0 1 2\n");
+  for (const std::string name : {"a.obj", "b.obj", "c.ply"}) {
+    const auto file =
+        folder.write("s.json", R"({"objects": [{"type": "mesh", "file": ")" + name +
+                                   R"(", "material": {"picture": "p.png"}}, {"type": "mesh", "file": ")" +
+                                   name + R"("}]})");
+    const Scene s = checked(import_scene(file));
+    EXPECT_EQ(s.warnings, std::vector<std::string>{}) << name;
+    ASSERT_FALSE(s.texturing.texcoords[0].empty()) << name;
+    EXPECT_EQ(s.texturing.texcoords[0][0].uv[0][0], 0.25f) << name;
+    EXPECT_NE(maps_of(s, 0).base, kNone) << name;
+    EXPECT_EQ(s.materials[s.triangles[1].material].maps, kNone) << name;
+  }
+  EXPECT_TRUE(load(folder / "a.obj").texturing.texcoords[0].empty()) << "nothing shows them";
+}
+
+// Each side shows all of it, upright and not mirrored to who looks at it from outside.
+TEST(Textures, OfJsonLieOnBoxesAndNotOnOtherShapes) {
+  const test::ScratchFolder folder;
+  folder.write("p.png", test::four_colors());
+  const auto file = folder.write("s.json",
+                                 R"({"materials": {"m": {"picture": "p.png"}}, "objects": [
+        {"type": "box", "min": [-1, 2, 3], "max": [1, 5, 9], "material": "m"},
+        {"type": "sphere", "center": [5, 0, 0], "radius": 1, "material": "m"},
+        {"type": "cylinder", "base": [9, 0, 0], "apex": [9, 1, 0], "radius": 1,
+         "material": {"normal_picture": "p.png"}},
+        {"type": "plane", "point": [0, -1, 0], "normal": [0, 1, 0],
+         "material": {"emission_picture": "p.png"}}]})");
+  const Scene s = checked(import_scene(file));
+  ASSERT_EQ(s.warnings.size(), 1u);
+  EXPECT_SAYS(s.warnings[0], "/objects/1: shapes show one place");
+  ASSERT_EQ(s.triangles.size(), 12u);
+  ASSERT_EQ(s.texturing.texcoords[0].size(), 12u);
+  double area = 0;
+  for (std::size_t i = 0; i < 12; ++i) {
+    std::array<dvec3, 3> p, uv;
+    for (std::size_t k = 0; k < 3; ++k) {
+      p[k] = s.vertices[s.triangles[i].vertex[k]];
+      const auto& at = s.texturing.texcoords[0][i].uv[k];
+      uv[k] = {at[0], at[1], 0};
+      if (std::abs(p[0].x - p[1].x) + std::abs(p[0].x - p[2].x) == 0 || p[0].z == p[1].z) continue;
+    }
+    const dvec3 n = glm::cross(p[1] - p[0], p[2] - p[0]), m = glm::cross(uv[1] - uv[0], uv[2] - uv[0]);
+    EXPECT_LT(m.z, 0) << i << ": rows go down, so it turns the other way round where it isn't mirrored";
+    area -= m.z / 2;
+    if (n.y != 0) continue;
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(uv[k].y, p[k].y == 5 ? 0 : 1) << i;
+  }
+  EXPECT_EQ(area, 6);
 }
 
 }  // namespace

@@ -320,9 +320,10 @@ std::size_t largest_mesh(const scene::Scene& scene) {
 
 void refuse_instances(const Prepared& scene, const char* what) {
   if (!scene.flat.instances.empty())
-    throw Error(ErrorCode::usage, fmt::format("the scene has {} instances of meshes, which {} can't follow; "
-                                              "load it with --instances flat, or add copies",
-                                              scene.counts.instances, what));
+    throw Error(ErrorCode::usage,
+                fmt::format("the scene has {} instances of meshes, which {} can't follow; "
+                            "load it with --instances flat, add copies, or ask about it in double geometry",
+                            scene.counts.instances, what));
 }
 
 }  // namespace kdray::prepare

@@ -282,10 +282,13 @@ scene::Studio studio_of(const Prepared& p) {
 
 }  // namespace
 
-Prepared in_studio(const Prepared& prepared) {
+Prepared in_studio(const Prepared& prepared, bool instead) {
   Prepared made = prepared;
   scene::Framing& framing = made.settings.framing;
-  if (!framing.camera || !framing.lights || framing.box.empty()) return made;
+  if (framing.box.empty()) return made;
+  if (instead && !framing.camera) made.settings.camera = scene::Camera{};
+  if (instead) framing.camera = framing.lights = true;
+  if (!framing.camera || !framing.lights) return made;
   framing.studio = studio_of(prepared);
   std::optional<int>& samples = made.settings.settings.samples;
   samples = samples.value_or(kSamples);

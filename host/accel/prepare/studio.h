@@ -12,8 +12,8 @@
 
 namespace kdray::prepare {
 
-// Returns the scene in a studio, as it is seen from then on (prepare/view.h); the scene itself where its file
-// has a camera or lights.
-Prepared in_studio(const Prepared& prepared);
+// Returns the scene in a studio, as it is seen from then on (prepare/view.h); where its file has a camera or
+// lights, `instead` of these, or else the scene itself.
+Prepared in_studio(const Prepared& prepared, bool instead = false);
 
 }  // namespace kdray::prepare

@@ -177,7 +177,8 @@ Color parse_color(std::string_view option, std::string_view text, std::string_vi
 
 CLI::Option* add_text(CLI::App& app, const std::string& name, const std::string& shape,
                       const std::string& help, std::function<void(const std::string&)> take) {
-  return app.add_option_function<std::string>(name, std::move(take), help)->type_name(shape);
+  // Of an option that is given twice the last one counts, so that scripts may add theirs.
+  return app.add_option_function<std::string>(name, std::move(take), help)->type_name(shape)->take_last();
 }
 
 std::string shape_of(std::span<const std::string_view> names) {

@@ -7,10 +7,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include "apps/cli/output.h"
+#include "kdray/kdray.h"
 
 namespace kdray::cli {
 
@@ -103,8 +107,21 @@ void BuildNotice::watch() {
   if (drawn) output_.draw("");
 }
 
+bool keeps_kernels() {
+  const char* const set = std::getenv("KDRAY_CACHE_DIR");
+  if (set != nullptr && *set == '\0') return true;  // in the runtime's own cache
+  std::filesystem::path folder = default_program_folder();
+  if (folder.empty()) return false;
+  std::error_code error;
+  while (folder.has_relative_path() && !std::filesystem::exists(folder, error)) folder = folder.parent_path();
+  return ::access(folder.c_str(), W_OK) == 0;
+}
+
 BuildNotice::Output notice_on_stderr(bool quiet) {
   BuildNotice::Output output;
+  if (!keeps_kernels())
+    output.text =
+        "compiling kernels for this scene and device; set KDRAY_CACHE_DIR to a folder of yours to keep them";
   if (quiet) return output;
   if (can_redraw())
     output.draw = draw_line;

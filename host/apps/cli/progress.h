@@ -63,6 +63,9 @@ class BuildNotice {
   std::thread thread_;  // the last member: it uses the others
 };
 
+// Returns whether kernels that are built now are there for later runs.
+bool keeps_kernels();
+
 // Returns functions that write the notice to stderr; none where `quiet`.
 BuildNotice::Output notice_on_stderr(bool quiet);
 

@@ -44,14 +44,15 @@ const char* name_of(Question question) {
 
 void add_question_options(CLI::App& app, QuestionArgs& args) {
   const std::string group = "What is asked (without: the closest hits of --rays)";
-  add_path(app, "--rays", "The rays: float32 or float64, N x 8: origin, t_min, direction, t_max", args.rays);
+  add_path(app, "--rays",
+           "The rays, a NumPy array or a text: N x 8: origin, t_min, direction, t_max; or N x 6", args.rays);
   app.add_flag("--any-hit", args.any_hit, "Only whether something is hit, not what is hit first")
       ->group(group);
   app.add_flag("--all-hits", args.all_hits, "All that each ray crosses, to an .npz")->group(group);
   add_int(app, "--max-hits", "With --all-hits: the first N of each ray", 1, 2147483647, args.max_hits)
       ->group(group);
   app.add_flag("--count", args.count, "How many surfaces each ray crosses")->group(group);
-  const std::string points = " of these points: float32 or float64, N x 3";
+  const std::string points = " of these points, a NumPy array or a text: N x 3";
   add_path(app, "--closest-point", "What lies nearest to each" + points, args.closest_point)->group(group);
   add_path(app, "--signed-distance", "How far the nearest surface is, negative inside," + points,
            args.signed_distance)
@@ -76,7 +77,11 @@ TraceRequest request_of(const QuestionArgs& args) {
 }
 
 array::TableFormat format_of(const std::string& output, Question question) {
-  const bool npz = ending_of(output) == ".npz";
+  const std::string ending = ending_of(output);
+  const bool npz = ending == ".npz";
+  if (!npz && !ending.empty() && ending != ".npy" && ending != ".csv")
+    refuse(fmt::format("--output '{}': expected a name that ends in .npy, .npz or .csv", output));
+  if (question != Question::all && ending == ".csv") return array::TableFormat::csv;
   if (question != Question::all) return npz ? array::TableFormat::npz : array::TableFormat::npy;
   if (!npz && output != "-")
     refuse(fmt::format(

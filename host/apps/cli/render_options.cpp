@@ -127,8 +127,8 @@ void add_view_options(CLI::App& app, ViewOptions& options) {
   };
   View& view = options.view;
   add_text(app, "--look", "NAME",
-           "Of a scene without camera and lights: studio (default): soft lights, a backdrop, a floor, a view "
-           "that fits; plain: two lights on black",
+           "studio: soft lights, a backdrop, a floor, a view that fits (default where the file has neither "
+           "camera nor lights; asked for, instead of these); plain: two lights on black",
            [&options](const std::string& text) {
              options.look = static_cast<Look>(parse_choice("--look", text, kLooks));
            })
@@ -176,7 +176,8 @@ void add_view_options(CLI::App& app, ViewOptions& options) {
 }
 
 PreparedScene in_look(const PreparedScene& scene, const ViewOptions& options) {
-  return options.look.value_or(Look::studio) == Look::studio ? scene.in_studio() : scene;
+  const bool asked = options.look.has_value();
+  return options.look.value_or(Look::studio) == Look::studio ? scene.in_studio(asked) : scene;
 }
 
 void tell_of_view(const PreparedScene& scene, const ViewOptions& options) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "apps/cli/output.h"
+#include "apps/cli/progress.h"
 
 namespace kdray::cli {
 
@@ -200,8 +201,8 @@ std::string cold_start_line(const Json& stats) {
     sum += s;
   }
   if (number(seconds, "compile") < kCold || parts.empty()) return {};
-  return fmt::format("a first start took {} of it ({}); the next finds the kernels built",
-                     seconds_in_words(sum), fmt::join(parts, ", "));
+  return fmt::format("a first start took {} of it ({}){}", seconds_in_words(sum), fmt::join(parts, ", "),
+                     keeps_kernels() ? "; the next finds the kernels built" : "");
 }
 
 std::string glass_line(const Json& stats) {

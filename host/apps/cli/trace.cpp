@@ -1,4 +1,4 @@
-// What    kdray trace: rays or points from a NumPy file, what a scene answers to a NumPy file.
+// What    kdray trace: rays or points from a file or a pipe, what a scene answers to a file.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -134,9 +134,9 @@ int run(const TraceArgs& o) {
   const Timer total;
   const TraceRequest request = request_of(o.question);
   check_walk(request.question, o.traversal, o.precision, o.tree.geometry);
-  static_cast<void>(format_of(o.output, request.question));
   RunFiles files;
   check_files(o, request, files);
+  static_cast<void>(format_of(o.output, request.question));
   const Timer step;
   array::RowsFile file(request.file, request.wanted());
   // Closest and any hits of floats, which are on the devices before the time counts.
@@ -166,12 +166,13 @@ int run(const TraceArgs& o) {
 }  // namespace
 
 Command add_trace(CLI::App& kdray) {
-  CLI::App* const app = kdray.add_subcommand("trace", "Trace rays from a NumPy file and write their hits");
+  CLI::App* const app = kdray.add_subcommand("trace", "Trace rays from a file and write their hits");
   const auto o = std::make_shared<TraceArgs>();
   add_scene_input(*app, o->scene, "The scene, as for render");
   add_question_options(*app, o->question);
   add_path(*app, "-o,--output",
-           "The answers: .npy, or .npz with an array for each field; '-': standard output", o->output)
+           "The answers: .npy, .npz with an array for each field, or .csv; '-': .npy to standard output",
+           o->output)
       ->required();
   add_int(*app, "--repeat", "Ask that often and report the median time (default 1)", 1, 1000000, o->repeat);
   add_path(*app, "--stats", "Write the run's figures as JSON ('-': to standard output)", o->stats);

@@ -41,7 +41,10 @@ class RayArrays {
   dvec3 direction(std::size_t i) const {
     return vector(rays_.directions[rays_.directions.size() == 1 ? 0 : i]);
   }
-  double t_min(std::size_t i) const { return value(rays_.t_min, i, 0); }
+  // -infinity is the least number: a whole line's.
+  double t_min(std::size_t i) const {
+    return std::max(value(rays_.t_min, i, 0), std::numeric_limits<double>::lowest());
+  }
   double t_max(std::size_t i) const { return value(rays_.t_max, i, std::numeric_limits<double>::infinity()); }
   // The same for t in double, which rays of floats are told rounded: what would be told as t_min, or as
   // t_max, lies beyond them.

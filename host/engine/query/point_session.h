@@ -53,7 +53,7 @@ struct ClosestPoint {
   double distance;
   dvec3 point;
   std::int32_t primitive;  // its number in file order, or -1
-  float u, v;
+  double u, v;
 };
 
 // What there is where nothing lies within the radius.

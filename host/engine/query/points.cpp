@@ -192,8 +192,7 @@ class Nearest {
         const double distance = places.distance(points[i], nearest->point, nearest->distance);
         if (distance > radius) continue;
         const auto number = static_cast<std::int32_t>(query::number_of(context.scene().flat, nearest->ref));
-        found_[i] = {distance, space.world(nearest->point), number, static_cast<float>(nearest->u),
-                     static_cast<float>(nearest->v)};
+        found_[i] = {distance, space.world(nearest->point), number, nearest->u, nearest->v};
       }
     });
   }

@@ -55,10 +55,10 @@ class PreparedScene {
   // The same scene seen otherwise, in a picture of this size (0: what the scene asks for, or square). Throws
   // ErrorCode::usage for a camera that isn't there, and for directions that make no view.
   PreparedScene seen(const View& view, int width = 0, int height = 0) const;
-  // The same scene in a studio, where its file has neither camera nor lights: from then on seen() chooses a
-  // camera that shows it well, soft lights that follow it, a backdrop and a floor (docs/scenes.md), as far as
-  // the view leaves them open.
-  PreparedScene in_studio() const;
+  // The same scene in a studio, where its file has neither camera nor lights, or `instead` of these: from
+  // then on seen() chooses a camera that shows it well, soft lights that follow it, a backdrop and a floor
+  // (docs/scenes.md), as far as the view leaves them open.
+  PreparedScene in_studio(bool instead = false) const;
   // The same shapes, white and shining on black: a picture of depth 1 is what share of each pixel they cover.
   PreparedScene coverage() const;
   const prepare::Prepared& prepared() const { return *prepared_; }

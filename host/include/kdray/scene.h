@@ -153,7 +153,8 @@ class Scene {
   // The least and the greatest coordinates of what was committed; none where that is nothing. They contain
   // all that a ray can hit; those of floats are wider by no more than rounding.
   std::optional<Extent> extent() const;
-  const std::vector<std::string>& warnings() const;  // what the loader left out or changed, one line each
+  // What the loader left out or changed, and what the last commit found, one line each.
+  std::vector<std::string> warnings() const;
   // All of it together. It is put together by the first call after a change: not for several threads at once.
   const scene::Scene& model() const;
   double load_seconds() const;

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "io/array/csv.h"
 #include "io/array/npy_header.h"
 #include "io/array/zip.h"
 
@@ -71,10 +72,14 @@ void write_rows(std::span<const Column> columns, const Sink& sink) {
   }
 }
 
-void write_npy(std::span<const Column> columns, const Sink& sink) {
+void check_lengths(std::span<const Column> columns) {
   for (const Column& c : columns)
     if (c.n_rows != columns.front().n_rows)
-      throw Error(ErrorCode::internal, "the columns of an .npy have different lengths");
+      throw Error(ErrorCode::internal, "the columns of an .npy or .csv have different lengths");
+}
+
+void write_npy(std::span<const Column> columns, const Sink& sink) {
+  check_lengths(columns);
   sink(header_of(columns));
   write_rows(columns, sink);
 }
@@ -88,6 +93,10 @@ Column flags(std::string name, std::span<const std::uint8_t> values) {
 
 void write_table(std::span<const Column> columns, TableFormat format, const Sink& sink) {
   if (format == TableFormat::npy) return write_npy(columns, sink);
+  if (format == TableFormat::csv) {
+    check_lengths(columns);
+    return write_csv(columns, sink);
+  }
   ZipWriter zip(sink);
   for (const Column& c : columns) zip.add(c.name + ".npy", [&](const Sink& to) { write_npy({&c, 1}, to); });
   zip.finish();

@@ -1,9 +1,9 @@
-// What    Named columns of answers, and the files that NumPy reads them from: .npy and .npz.
+// What    Named columns of answers, and the files that they are written to: NumPy's .npy and .npz, and .csv.
 // Shape   Columns are views of arrays, of structs' fields too, that stay where they are. An .npy holds
 //         columns of one length: one of them as a plain array, several as a structured one, packed. An .npz
 //         holds any, an array for each. Little endian.
 // Errors  kdray::Error, ErrorCode::input: what can't be written. ErrorCode::internal for columns of several
-//         lengths in an .npy.
+//         lengths in an .npy or a .csv.
 #pragma once
 
 #include <array>
@@ -63,7 +63,7 @@ Column column(std::string name, std::span<const Struct> rows, T Struct::*field) 
 // Returns a column of bytes that are 0 or 1: false and true.
 Column flags(std::string name, std::span<const std::uint8_t> values);
 
-enum class TableFormat { npy, npz };
+enum class TableFormat { npy, npz, csv };
 
 void write_table(std::span<const Column> columns, TableFormat format, const Sink& sink);
 // Writes a table to a file, whole or not at all.

@@ -190,7 +190,7 @@ std::string read_bytes(const std::filesystem::path& path, std::size_t max_bytes)
     throw input_error(file, 0, "no such file", "check the path");
   }
   if (status.type() == std::filesystem::file_type::directory) {
-    throw input_error(file, 0, "is a folder", "name a scene file in it");
+    throw input_error(file, 0, "is a folder", "name a file in it");
   }
   const std::unique_ptr<std::FILE, Close> in(std::fopen(file.c_str(), "rb"));
   if (!in) throw input_error(file, 0, std::string("cannot be read: ") + std::strerror(errno));

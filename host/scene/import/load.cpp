@@ -105,6 +105,8 @@ bool is_read(const std::string& ending) {
 // Called before the file is read: a wrong ending should not cost the reading of gigabytes.
 void check_ending(const std::filesystem::path& file, const std::string& ending) {
   if (is_read(ending)) return;
+  if (std::filesystem::is_directory(file))
+    throw input_error(file.string(), 0, "is a folder", "name a scene file in it");
   if (is_of_assimp(ending))
     throw input_error(file.string(), 0,
                       "reading '" + ending + "' needs assimp, which this kdray was built without",
@@ -130,9 +132,25 @@ bool is_scene_name(const std::filesystem::path& file) {
   return is_read(format_of(file));
 }
 
+namespace {
+
+thread_local bool imports = false;
+
+struct Importing {
+  Importing() { imports = true; }
+  ~Importing() { imports = false; }
+};
+
+}  // namespace
+
 Scene import_scene(const std::filesystem::path& file) {
   check_ending(file, format_of(file));
+  const Importing importing;
   return import_text(read_file(file), file, {});
+}
+
+bool keeps_texcoords() {
+  return imports;
 }
 
 namespace {

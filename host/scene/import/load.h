@@ -56,4 +56,8 @@ Scene read_assimp(std::string_view text,
 // made up. For files that include others.
 Scene import_scene(const std::filesystem::path& file);
 
+// Returns whether the file in work is read by import_scene(): readers then keep texture coordinates though it
+// names no picture, as the file that includes it may lay one on.
+bool keeps_texcoords();
+
 }  // namespace kdray::scene

@@ -76,6 +76,23 @@ void add_box(Scene& part, const dvec3& corner, const dvec3& opposite) {
     }
 }
 
+void add_box_texcoords(Scene& box) {
+  const dvec3 lo = box.vertices.front(), size = box.vertices.back() - lo;
+  for (const Triangle& t : box.triangles) {
+    const auto corner = [&](std::size_t i) { return (box.vertices[t.vertex[i]] - lo) / size; };
+    const dvec3 a = corner(0), outwards = glm::cross(corner(1) - a, corner(2) - a);
+    layout::TexCoords at{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const dvec3 p = corner(i);
+      glm::dvec2 uv(outwards.z > 0 ? p.x : 1 - p.x, 1 - p.y);
+      if (outwards.x != 0) uv.x = outwards.x < 0 ? p.z : 1 - p.z;
+      if (outwards.y != 0) uv = {p.x, outwards.y > 0 ? p.z : 1 - p.z};
+      at.uv[i][0] = static_cast<float>(uv.x), at.uv[i][1] = static_cast<float>(uv.y);
+    }
+    box.texturing.texcoords[0].push_back(at);
+  }
+}
+
 void add_closed(Scene& part, const Closed& closed, std::size_t first_disc, Unsettled& unsettled) {
   Cone wall{};
   wall.base = closed.base, wall.apex = closed.apex;

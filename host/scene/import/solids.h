@@ -19,6 +19,10 @@ namespace kdray::scene {
 // Adds the triangles of a box, which face outwards; its corners are exact.
 void add_box(Scene& part, const dvec3& corner, const dvec3& opposite);
 
+// Gives the triangles of such a box, which is all that is there, the places that show a whole picture on each
+// side: upright as seen from outside, with y up; on top as seen from z, below as it would fall on a mirror.
+void add_box_texcoords(Scene& box);
+
 struct Closed {
   dvec3 base{0}, apex{0};
   double base_radius = 0, apex_radius = 0;

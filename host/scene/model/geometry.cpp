@@ -346,7 +346,7 @@ std::string range_warning(std::size_t lost, std::size_t fine, std::size_t kept) 
     what += fmt::format("{}{} primitives are smaller than a millionth of it, and may lose their shadows",
                         what.empty() ? "" : " and ", fine);
   return "the scene ranges wider than single precision: " + what +
-         "; take out what lies far off, or what is huge, or split the scene";
+         "; take out what lies far off, or what is huge, split the scene, or ask about it in double geometry";
 }
 
 Box bounds_of(const TriangleGeometry& t) {

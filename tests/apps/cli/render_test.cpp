@@ -461,5 +461,27 @@ TEST(RenderCommand, ADeviceThatIsNotThereIsExitCode3) {
   EXPECT_EQ(folder.n_entries(), 1u);
 }
 
+// The file has a camera that looks away, and a light.
+TEST(RenderCommand, AStudioThatIsAskedForStandsInForTheFilesOwnView) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const std::string objects = R"("objects": [{"type": "sphere", "center": [0, 0, 0], "radius": 1}])";
+  const fs::path bare = folder.put("bare.json", "{" + objects + "}");
+  const fs::path lit = folder.put("lit.json",
+                                  R"({"camera": {"from": [0, 0, 5], "at": [0, 0, 9]},
+          "lights": [{"type": "point", "position": [0, 9, 0]}], )" +
+                                      objects + "}");
+  const auto rendered = [&](const fs::path& scene, std::vector<std::string> options) {
+    std::vector<std::string> words = {"render", scene, "--size", "24", "-o", folder / "a.exr"};
+    words.insert(words.end(), options.begin(), options.end());
+    EXPECT_TRUE(succeeds(kdray(words)));
+    return folder.get("a.exr");
+  };
+  const std::string studio = rendered(bare, {});
+  EXPECT_EQ(rendered(lit, {"--look", "studio"}), studio);
+  EXPECT_NE(rendered(lit, {}), studio);
+  EXPECT_EQ(rendered(bare, {"--size", "9", "--size", "24"}), studio) << "the last one counts";
+}
+
 }  // namespace
 }  // namespace kdray::test

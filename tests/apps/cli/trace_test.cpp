@@ -181,5 +181,22 @@ TEST(TraceCommand, TheRaysAreNotOverwritten) {
   EXPECT_EQ(folder.get("r.npy"), rays_npy(kRays));
 }
 
+TEST(TraceCommand, TakesTextsAndPipesAndWritesCsv) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
+  const fs::path rays = folder.put("r.csv", "0,0,5,0,0,-1\n0,0,5,0,0,1\n");
+  ASSERT_TRUE(succeeds(kdray({"trace", scene, "--rays", rays, "-o", folder / "h.csv"})));
+  const std::string hits = folder.get("h.csv");
+  EXPECT_EQ(hits.substr(0, hits.find('\n')), "t,primitive,u,v");
+  EXPECT_NE(hits.find("\ninf,-1,0,0\n"), std::string::npos);
+  ASSERT_TRUE(succeeds(kdray({"trace", scene, "--rays", "-", "-o", folder / "p.csv"}, {.stdin_file = rays})));
+  EXPECT_EQ(folder.get("p.csv"), hits);
+  EXPECT_TRUE(fails_with(kdray({"trace", scene, "--rays", rays, "-o", folder / "h.txt"}), 2, "--output"));
+  EXPECT_TRUE(
+      fails_with(kdray({"trace", scene, "--rays", rays, "--all-hits", "-o", folder / "h.csv"}), 2, ".npz"));
+  EXPECT_FALSE(fs::exists(folder / "h.txt"));
+}
+
 }  // namespace
 }  // namespace kdray::test

@@ -154,7 +154,6 @@ TEST(Usage, MissingAndSuperfluousArguments) {
   EXPECT_TRUE(fails_with(kdray({"render", "a.nff", "b.nff"}), 2, "b.nff"));
   EXPECT_TRUE(fails_with(kdray({"render", "a.nff", "--no-such-option"}), 2, "--no-such-option"));
   EXPECT_TRUE(fails_with(kdray({"render", "a.nff", "--size"}), 2, "--size"));
-  EXPECT_TRUE(fails_with(kdray({"render", "a.nff", "--depth", "3", "--depth", "4"}), 2, "--depth"));
 }
 
 struct Refused {

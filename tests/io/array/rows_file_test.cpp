@@ -94,7 +94,7 @@ TEST(ReadRays, RefusesOtherArraysAndSaysWhatToDo) {
   EXPECT_TRUE(fails(reading("'<f4'", "True", "(3, 8)"), "numpy.ascontiguousarray"));
   EXPECT_TRUE(fails(reading("'<f4'", "False", "(24,)"), "has the shape (24,)"));
   EXPECT_TRUE(fails(reading("'<f4'", "False", "()"), "has the shape ()"));
-  EXPECT_TRUE(fails(reading("'<f4'", "False", "(4, 6)"), "has the shape (4, 6)"));
+  EXPECT_TRUE(fails(reading("'<f4'", "False", "(4, 7)"), "has the shape (4, 7)"));
   EXPECT_TRUE(fails(reading("'<f4'", "False", "(1, 3, 8)"), "N x 8"));
   EXPECT_TRUE(
       fails(reading("[('o]', '<f4', (3,)), ('d', '<f4')]", "False", "(3,)"), "structured_to_unstructured"));
@@ -152,6 +152,53 @@ TEST(ReadRays, EveryTruncationAndDamageIsRefusedOrRead) {
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::input) << "seed " << kSeed;
     }
+  }
+}
+
+std::vector<std::array<double, 8>> read_doubles(const std::filesystem::path& file) {
+  RowsFile rows(file, kRays);
+  EXPECT_TRUE(rows.in_double());
+  return rows.read<std::array<double, 8>>();
+}
+
+TEST(ReadRays, ReadsTexts) {
+  const test::Folder folder;
+  const std::array<double, 8> first{0.1, -2, 3e-300, 0, 1, 0, -1, INFINITY}, second{1, 2, 3, 0.5, 4, 5, 6, 7};
+  EXPECT_EQ(read_doubles(folder.put("r.txt", "# rays\n0.1 -2 +3e-300 0 1 0 -1 inf\n\n1 2 3 0.5 4 5 6 7")),
+            (std::vector{first, second}));
+  EXPECT_EQ(
+      read_doubles(folder.put("r.csv", "ox,oy,oz,t_min,dx,dy,dz,t_max\r\n0.1,-2, 3e-300,0,1,0,-1,inf\r\n")),
+      std::vector{first});
+  EXPECT_EQ(read_doubles(folder.put("r.csv", "0.1;-2;3e-300;1;0;-1\n")), std::vector{first});
+  EXPECT_EQ(RowsFile(folder.put("p.xyz", "1\t2\t3\n"), kPoints).size(), 1u);
+}
+
+TEST(ReadRays, SaysWhatIsWrongWithTexts) {
+  const test::Folder folder;
+  const auto says = [&](const std::string& text, const std::string& what) {
+    return fails([&] { read_rays(folder.put("r.txt", text)); }, what, ErrorCode::input);
+  };
+  EXPECT_TRUE(says("x y z\n1 2 3 a 5 6\n", "r.txt:2: 'a' is no number"));
+  EXPECT_TRUE(says("1 2 3 4 5 6\n1 2 3\n", "r.txt:2: has 3 numbers, and the lines before it 6"));
+  EXPECT_TRUE(says("1 2 3\n", "has lines of 3 numbers but rays have 8"));
+  EXPECT_TRUE(says("1 2 3 4 5 1e400\n", "'1e400' is no number"));
+  EXPECT_TRUE(says("# nothing\n", "has no line of numbers"));
+  EXPECT_TRUE(says("1 2 3 4 5 6 7 8\n\x01\x02", "neither a NumPy file nor a text"));
+}
+
+TEST(ReadRays, WithoutIntervalsGoFromTheStartOn) {
+  const test::Folder folder;
+  const std::vector<float> values = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+  const std::string data(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
+  const auto rays = read_rays(
+      folder.put("r.npy", file_of("{'descr': '<f4', 'fortran_order': False, 'shape': (2, 6), }", data)));
+  ASSERT_EQ(rays.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto first = static_cast<float>(6 * i);
+    EXPECT_EQ(rays[i].origin[0], first + 1);
+    EXPECT_EQ(rays[i].t_min, 0);
+    EXPECT_EQ(rays[i].direction[2], first + 6);
+    EXPECT_EQ(rays[i].t_max, INFINITY);
   }
 }
 

@@ -129,5 +129,20 @@ TEST(Table, AFileThatCannotBeWrittenIsNamedAndLeavesNothing) {
   EXPECT_EQ(folder.n_entries(), 0u);
 }
 
+TEST(Table, OfTextHasTheNumbersToTheBit) {
+  const std::vector<float> u = {0.1f, -INFINITY};
+  const std::vector<double> t = {1.0 / 3, 1e300};
+  const std::vector<std::array<double, 3>> points = {{1, 2, 3.5}, {-0.0, 0, NAN}};
+  const std::vector<std::uint8_t> inside = {1, 0};
+  const std::vector<std::int32_t> number = {-1, 7};
+  EXPECT_EQ(written({column("t", std::span(t)), column("u", std::span(u)),
+                     column("point", std::span<const std::array<double, 3>>(points)),
+                     column("n", std::span(number)), flags("inside", inside)},
+                    TableFormat::csv),
+            "t,u,point_x,point_y,point_z,n,inside\n0.3333333333333333,0.1,1,2,3.5,-1,1\n1e+300,-inf,-0,0,nan,"
+            "7,0\n");
+  EXPECT_EQ(written({column("t", std::span<const double>())}, TableFormat::csv), "t\n");
+}
+
 }  // namespace
 }  // namespace kdray::array

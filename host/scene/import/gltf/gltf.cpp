@@ -43,6 +43,7 @@ class Reader {
     scene_.names =
         names_.finish(scene_.primitive_count(), static_cast<std::uint32_t>(scene_.instances.size()));
     expose(scene_);
+    aim_cameras(scene_);
     if (!scene_.cameras.empty()) scene_.camera = scene_.cameras.front();
     return std::move(scene_);
   }

@@ -89,6 +89,17 @@ void expose(Scene& scene) {
   }
 }
 
+void aim_cameras(Scene& scene) {
+  if (scene.cameras.empty()) return;
+  const DBox box = scene.bounds();
+  if (box.empty()) return;
+  for (Camera& camera : scene.cameras) {
+    const dvec3 forward = camera.at - camera.from;
+    const double depth = glm::dot(box.center() - camera.from, forward);
+    if (depth > 0.01 * glm::length(box.extent())) camera.at = camera.from + depth * forward;
+  }
+}
+
 std::optional<Camera> read_camera(const JsonNode& camera, const dmat4& to_world,
                                   std::vector<std::string>& warnings) {
   Camera out;

@@ -18,6 +18,11 @@ Light read_light(const JsonNode& light, const dmat4& to_world);
 // Scales the lights' colours so that the exposure is as above. The scene's geometry must be there.
 void expose(Scene& scene);
 
+// Cameras of glTF files look in a direction. Makes what they look at the point on their way that is as far
+// off as the middle of the scene, where that lies ahead: what pictures are turned around, and where a lens is
+// focused.
+void aim_cameras(Scene& scene);
+
 // Returns nothing, and warns, for a camera that isn't perspective or has no view direction.
 std::optional<Camera> read_camera(const JsonNode& camera, const dmat4& to_world,
                                   std::vector<std::string>& warnings);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "layout/frame.layout.h"
 #include "scene/import/json/json_node.h"
 #include "scene/import/json/json_objects.h"
 #include "scene/import/load.h"
@@ -166,7 +167,7 @@ RenderSettings read_settings(const JsonNode& node) {
     settings.width = sides[0].integer(1, 65536);
     settings.height = sides[1].integer(1, 65536);
   }
-  if (const auto depth = node.find("depth")) settings.depth = depth->integer(1, 1000);
+  if (const auto depth = node.find("depth")) settings.depth = depth->integer(1, KDRAY_MAX_DEPTH);
   if (const auto samples = node.find("samples")) settings.samples = samples->integer(1, 65536);
   if (const auto weight = node.find("min_weight")) settings.min_weight = weight->number_between(0, 1);
   return settings;

@@ -146,10 +146,10 @@ bool is_comment(std::string_view text, std::size_t at) {
   return at < text.size() && text[at] == '#';
 }
 
-bool Builder::parse_error(std::size_t position, const std::string&, const json::exception& error) {
-  if (dynamic_cast<const json::parse_error*>(&error) == nullptr)  // a number beyond double's range
-    throw input_error(file_, 0, std::string("not usable JSON: ") + error.what());
+bool Builder::parse_error(std::size_t position, const std::string& token, const json::exception& error) {
   const std::size_t at = position > 0 ? position - 1 : 0, line = line_at(text_, at);
+  if (dynamic_cast<const json::parse_error*>(&error) == nullptr)
+    throw input_error(file_, line, token + " is beyond what a number holds, 1.8e308");
   if (at >= text_.size() && !open_.empty())
     throw input_error(file_, line,
                       "not JSON: the text ends inside of " + std::to_string(open_.size()) + " open brackets",

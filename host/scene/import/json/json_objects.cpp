@@ -114,6 +114,20 @@ std::string name_in(const JsonNode& material) {
   return material.is_string() ? material.string() : std::string();
 }
 
+Scene imported(const std::filesystem::path& path, const JsonNode& name) {
+  try {
+    return import_scene(path);
+  } catch (const Error&) {
+    if (std::filesystem::exists(path)) throw;
+    throw name.error("no file " + path.string());
+  }
+}
+
+// Of a part of one material.
+bool shows_pictures(const Scene& part) {
+  return part.materials[0].maps != kNone;
+}
+
 // Returns the name of a part's material: the object's, or else what the part's own file calls it.
 std::string name_of(const Scene& part, std::uint32_t material, const JsonNode& object) {
   if (const auto own = object.find("material")) return name_in(*own);
@@ -159,6 +173,13 @@ void JsonObjects::wear(Scene& part, const Material& material) const {
   part.texturing.pictures = scene_.texturing.pictures;
 }
 
+// Shapes have no texture coordinates.
+void JsonObjects::wear_plain(Scene& part, const JsonNode& object) {
+  wear(part, material_of(object));
+  if (!shows_pictures(part) || std::exchange(warned_of_pictures_, true)) return;
+  scene_.warnings.push_back(object.error("shapes show one place of their material's pictures").what());
+}
+
 Material JsonObjects::material_of(const JsonNode& object) const {
   const auto node = object.find("material");
   if (!node) return Material{.ambient = vec3(0.08f), .diffuse = vec3(0.72f)};
@@ -178,7 +199,7 @@ const Scene& JsonObjects::mesh(const JsonNode& file) {
   const std::filesystem::path path = folder_ / name;
   if (format_of(path) == ".json") throw file.error("a scene cannot include another .json scene");
   const Instancing copied(Instances::flat);  // a part has no instances of its own
-  Scene& part = meshes_[name] = import_scene(path);
+  Scene& part = meshes_[name] = imported(path, file);
   scene_.warnings.insert(scene_.warnings.end(), part.warnings.begin(), part.warnings.end());
   return part;
 }
@@ -191,8 +212,8 @@ void JsonObjects::read_mesh(const JsonNode& object) {
   if (object.find("material")) {
     part.texturing = {.texcoords = std::move(part.texturing.texcoords)};
     wear(part, material_of(object));
-    if (part.materials[0].maps == kNone) part.texturing = {};
-    if (part.materials[0].maps != kNone && part.texturing.texcoords[0].empty())
+    if (!shows_pictures(part)) part.texturing = {};
+    if (shows_pictures(part) && part.texturing.texcoords[0].empty())
       scene_.warnings.push_back(
           object["file"].error("has no texture coordinates, so pictures show one place").what());
     for (Triangle& t : part.triangles) t.material = 0;
@@ -200,6 +221,7 @@ void JsonObjects::read_mesh(const JsonNode& object) {
       for (auto& shape : decltype(kind)::of(part)) shape.material = 0;
     });
   }
+  if (part.texturing.textures.empty()) part.texturing.texcoords = {};
   if (object.find("instances")) return append_instances(std::move(part), object);
   append(part, object);
 }
@@ -311,10 +333,11 @@ void JsonObjects::read_triangles(const JsonNode& object) {
 void JsonObjects::read_box(const JsonNode& object) {
   object.expect_keys(json_keys::kBox);
   Scene part;
-  part.materials = {material_of(object)};
+  wear(part, material_of(object));
   const dvec3 lo = object["min"].vector(), hi = object["max"].vector();
   if (lo.x == hi.x || lo.y == hi.y || lo.z == hi.z) throw object.error("a box without a volume");
   add_box(part, lo, hi);
+  if (shows_pictures(part)) add_box_texcoords(part);
   place(object, part);
   append(part, object);
 }
@@ -326,7 +349,7 @@ void JsonObjects::read_cylinder(const JsonNode& object) {
   closed.apex_radius = apex_radius ? apex_radius->number_from(0) : closed.base_radius;
   if (const char* const fault = fault_of(closed)) throw object.error(fault);
   Scene part;
-  part.materials = {material_of(object)};
+  wear_plain(part, object);
   add_closed(part, closed, scene_.discs.size(), unsettled_);
   append(part, object);
 }
@@ -336,7 +359,7 @@ void JsonObjects::read_plane(const JsonNode& object) {
   Plane plane{object["point"].vector(), object["normal"].direction(), 0};
   if (const auto extent = object.find("extent")) plane.extent = extent->number_above(0);
   Scene part;
-  part.materials = {material_of(object)};
+  wear_plain(part, object);
   add_plane(part, plane, scene_.discs.size(), unsettled_);
   append(part, object);
 }
@@ -350,7 +373,7 @@ void JsonObjects::read_shape(Kind, const JsonNode& object) {
              fields_of(static_cast<const Shape*>(nullptr)));
   if (const char* const fault = fault_of(shape)) throw object.error(fault);
   Scene part;
-  wear(part, material_of(object));
+  wear_plain(part, object);
   Kind::of(part) = {shape};
   append(part, object);
 }

@@ -282,12 +282,13 @@ float opacity(const MtlMaterial& mtl) {
 }
 
 // Returns what goes through: 1 - d, coloured by Tf. A refracting material that only has Tf is as transparent
-// as that.
+// as that; but illum 4, Tf 1 1 1 and Ni 1 is how Maya writes what is opaque.
 vec3 transmit_of(const MtlMaterial& mtl, int illum) {
   const float through = 1 - opacity(mtl);
   if (!has_refraction(illum)) return vec3(through);
   if (through > 0) return through * mtl.tf.value_or(vec3(1));
-  return mtl.tf.value_or(vec3(0));
+  const vec3 filter = mtl.tf.value_or(vec3(0));
+  return illum == 4 && filter == vec3(1) && mtl.ni == 1 ? vec3(0) : filter;
 }
 
 float largest(const vec3& v) {
@@ -308,6 +309,10 @@ void share_energy(int illum, Material& m) {
 }
 
 }  // namespace
+
+bool is_invisible(const MtlMaterial& mtl) {
+  return opacity(mtl) == 0 && !(has_refraction(mtl.illum.value_or(2)) && mtl.ni != 1);
+}
 
 Material whitted_from_mtl(const MtlMaterial& mtl, bool has_picture) {
   const int illum = mtl.illum.value_or(2);

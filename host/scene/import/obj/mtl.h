@@ -48,6 +48,9 @@ void read_mtl(std::string_view text, const std::string& file, std::vector<MtlMat
 // `has_picture` says whether the picture of map_Kd is there.
 Material whitted_from_mtl(const MtlMaterial& mtl, bool has_picture = false);
 
+// Returns whether nothing is seen of a surface but a highlight.
+bool is_invisible(const MtlMaterial& mtl);
+
 // The materials of an OBJ file: numbers for the names that `usemtl` gives, and at the end what the MTL
 // files say about them. Errors: A missing MTL file, or a missing material, is a warning and the default
 // material.

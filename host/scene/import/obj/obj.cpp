@@ -33,8 +33,8 @@ class ObjReader {
  public:
   ObjReader(std::string_view text, const std::filesystem::path& file)
       : text_(text), in_(text, file.string()), materials_(file, scene_) {
-    reads_texcoords_ =
-        text.find("tllib") != std::string_view::npos || text.find("TLLIB") != std::string_view::npos;
+    reads_texcoords_ = keeps_texcoords() || text.find("tllib") != std::string_view::npos ||
+                       text.find("TLLIB") != std::string_view::npos;
   }
 
   // Returns nothing where a face names what comes only after it.
@@ -74,7 +74,7 @@ class ObjReader {
     color_corners();
     materials_.finish(!scene_.texturing.colors.empty(), names_);
     scene_.names = names_.finish(scene_.primitive_count(), 0);
-    if (scene_.texturing.textures.empty()) scene_.texturing.texcoords[0] = {};
+    if (scene_.texturing.textures.empty() && !keeps_texcoords()) scene_.texturing.texcoords[0] = {};
     settle_vertices(scene_, [&](std::size_t) { return in_.file() + ":" + std::to_string(bad_vertex_line_); });
     settle_normals(scene_, in_.file());
     left_out_.warn(in_.file(), scene_.warnings);

@@ -69,6 +69,17 @@ class Library {
   std::unordered_map<std::string, const MtlMaterial*> alike_;
 };
 
+// Exporters have written `Tr 1` and `d 0` for what is opaque.
+bool all_are_invisible(const Library& library, const std::vector<std::string>& names) {
+  bool any = false;
+  for (const std::string& name : names) {
+    const MtlMaterial* const mtl = library.find(name);
+    if (mtl && !is_invisible(*mtl)) return false;
+    any = any || mtl;
+  }
+  return any;
+}
+
 }  // namespace
 
 // Returns a name as it is given, or without its quotes, from the OBJ file's folder on.
@@ -233,8 +244,14 @@ void ObjMaterials::finish(bool colored, NameTable& names) {
   std::size_t n_missing = 0;
   std::string first_missing;
   std::map<std::string, std::size_t> left_out;  // materials, by the statement
+  const bool opaque = all_are_invisible(library, names_);
+  if (opaque)
+    scene_.warnings.push_back(file_.string() +
+                              ": by d or Tr of its MTL file nothing of it is seen: it is opaque instead");
   for (const std::string& name : names_) {
     const MtlMaterial* mtl = library.find(name);
+    MtlMaterial seen;
+    if (mtl && opaque) seen = *mtl, seen.dissolve = 1, mtl = &seen;
     names.name_material(static_cast<std::uint32_t>(scene_.materials.size()), name);
     scene_.materials.push_back(material_of(mtl, colored));
     if (mtl)

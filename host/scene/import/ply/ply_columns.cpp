@@ -4,6 +4,7 @@
 #include <array>
 #include <string_view>
 
+#include "scene/import/load.h"
 #include "scene/import/text_scanner.h"
 
 namespace kdray::scene::ply {
@@ -37,9 +38,13 @@ Colors find_colors(const Element& element) {
   return {};
 }
 
+bool wants_texcoords(const Header& header) {
+  return !header.textures.empty() || keeps_texcoords();
+}
+
 // Returns the property that is a list of floats, u and v for each corner.
 const Property* find_texcoords_of_faces(const Header& header) {
-  if (header.textures.empty()) return nullptr;
+  if (!wants_texcoords(header)) return nullptr;
   for (const Element& element : header.elements) {
     if (element.name != "face") continue;
     const Property* const list = element.find("texcoord");
@@ -84,7 +89,7 @@ VertexColumns find_columns(const Header& header, const Element& element, const s
   columns.has_colors = colors[0] != nullptr;
   if (columns.has_colors) columns.color_unit = largest_color(colors[0]->type);
   for (std::size_t c = 0; c < 4; ++c) set(colors[c], 6 + c);
-  if (header.textures.empty() || find_texcoords_of_faces(header)) return columns;
+  if (!wants_texcoords(header) || find_texcoords_of_faces(header)) return columns;
   const auto texcoords = find_texcoords(element);
   columns.has_texcoords = texcoords[0] != nullptr;
   for (std::size_t c = 0; c < 2; ++c) set(texcoords[c], 10 + c);
