@@ -219,6 +219,25 @@ GeometryInfo Scene::info(GeometryId geometry) const {
           added.enabled, added.prototype, static_cast<std::uint32_t>(added.instances.size())};
 }
 
+namespace {
+
+MeshArrays arrays_of(std::span<const dvec3> vertices, std::span<const scene::Triangle> triangles) {
+  MeshArrays made;
+  made.vertices.reserve(vertices.size());
+  for (const dvec3& v : vertices) made.vertices.push_back({v.x, v.y, v.z});
+  made.triangles.reserve(triangles.size());
+  for (const scene::Triangle& t : triangles) made.triangles.push_back(t.vertex);
+  return made;
+}
+
+}  // namespace
+
+MeshArrays Scene::mesh(GeometryId geometry) const {
+  if (impl_->is_file(geometry)) return arrays_of(impl_->base.vertices, impl_->base.triangles);
+  const scene::AddedGeometry& added = impl_->added(geometry);
+  return arrays_of(added.vertices, added.triangles);
+}
+
 std::vector<Part> Scene::Impl::parts_of(GeometryId id, std::vector<scene::NameRun> scene::Names::*runs) {
   std::vector<Part> parts;
   if (!is_file(id)) static_cast<void>(added(id));

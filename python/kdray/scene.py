@@ -363,6 +363,16 @@ class Scene:
         parts = (tuple(Part(*p) for p in of(id)) for of in (self._core.parts, self._core.instance_parts))
         return Geometry(id, *self._core.info(id), *parts)
 
+    def mesh(self, id: int = 0) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]:
+        """The triangles of a geometry where they are now: vertices (n, 3), as given, and their numbers (m, 3).
+
+        Triangles are in the order of their numbers: where there are no shapes, row i is primitive i. Of a file
+        (geometry 0) without what it keeps as instances. With it a file's mesh can be a prototype, or in another scene:
+        ``scene.add_mesh(*kdray.load("a.stl").mesh(), prototype=True)``.
+        """
+        vertices, triangles = self._core.mesh(id)
+        return vertices, triangles.astype(np.int64)
+
     @property
     def materials(self) -> list[MaterialInfo]:
         """The materials that hits may have (`materials_of`): the file's, then those that were added."""
@@ -402,6 +412,24 @@ class Scene:
         ends = self._ready().bounds()
         return None if ends is None else np.array(ends)
 
+    def offset_origins(self, hits: Hits, directions: ArrayLike) -> Array:
+        """Origins of rays that leave what was hit, for shadows, reflections and ambient occlusion.
+
+        These are `hits.point`, moved along `hits.normal` to the side that `directions` (broadcast to the hits) go to,
+        by what rounding may have moved them: some 2e-6 of the scene's size, with doubles of double geometry 1e-14 of
+        it. A ray that began at `hits.point` itself would meet its own surface as often as not.
+        """
+        point, normal = hits.point, hits.normal
+        bounds = self.bounds
+        size = 0.0 if bounds is None else float(np.abs(bounds[1] - bounds[0]).max())
+        in_floats = point.dtype == np.float32
+        exact = self._in_doubles and not in_floats
+        far = np.abs(point).max(axis=-1, keepdims=True, initial=0.0)
+        move = (2.0**-46 if exact else 2.0**-19) * size + (2.0**-21 if in_floats else 2.0**-50) * far
+        along = (np.asarray(directions, np.float64) * normal).sum(axis=-1, keepdims=True)
+        move = np.copysign(np.where(np.isfinite(far), move, 0.0), along)  # a miss stays where it is
+        return np.asarray(point + move * normal, point.dtype)
+
     @property
     def geometry(self) -> str:
         """What vertices are to questions: "float" or "double". Commits changes."""
@@ -410,7 +438,7 @@ class Scene:
 
     @property
     def warnings(self) -> list[str]:
-        """What the reader of its file left out or changed, a line each."""
+        """What the reader of its file left out or changed, and what the last commit found, a line each."""
         return list(self._core.warnings())
 
     # ---- How it looks

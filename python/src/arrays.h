@@ -8,6 +8,7 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -36,6 +37,14 @@ nanobind::ndarray<nanobind::numpy, T> owned(std::vector<T>&& values) {
   auto* const kept = new std::vector<T>(std::move(values));
   nanobind::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
   return nanobind::ndarray<nanobind::numpy, T>(kept->data(), {kept->size()}, owner);
+}
+
+// The same with three values to a row.
+template <class T>
+nanobind::ndarray<nanobind::numpy, T> owned_rows(std::vector<std::array<T, 3>>&& rows) {
+  auto* const kept = new std::vector<std::array<T, 3>>(std::move(rows));
+  nanobind::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<std::array<T, 3>>*>(p); });
+  return nanobind::ndarray<nanobind::numpy, T>(kept->data(), {kept->size(), 3}, owner);
 }
 
 }  // namespace kdray::python

@@ -90,6 +90,10 @@ void add_geometries(SceneClass& scene) {
     return nb::make_tuple(info.name, info.mask, info.primitives, info.enabled, info.prototype,
                           info.instances);
   });
+  scene.def("mesh", [](const Scene& s, GeometryId id) {
+    MeshArrays mesh = s.mesh(id);
+    return nb::make_tuple(owned_rows(std::move(mesh.vertices)), owned_rows(std::move(mesh.triangles)));
+  });
   const auto rows_of = [](const std::vector<Part>& parts) {
     std::vector<std::tuple<std::string, std::uint32_t, std::uint32_t>> rows;
     for (const Part& p : parts) rows.emplace_back(p.name, p.first, p.count);

@@ -471,3 +471,51 @@ def test_arguments_of_wrong_types_are_told_in_a_line(ball, ask):
     with pytest.raises(TypeError) as told:
         ask(ball)
     assert "\n" not in str(told.value) and "_core" not in str(told.value) and "kdray.Scene." in str(told.value)
+
+
+@pytest.mark.parametrize("geometry", ["float", "double"])
+@pytest.mark.parametrize("kind", [np.float32, np.float64])
+@pytest.mark.parametrize("place", [(0, 0, 0), (5e3, -2e3, 7)])
+def test_rays_that_leave_a_convex_body_meet_nothing(ball_mesh, rng, geometry, kind, place):
+    vertices, triangles = ball_mesh
+    for body in ("mesh", "sphere", "box"):
+        scene = kdray.Scene(geometry=geometry)
+        if body == "mesh":
+            scene.add_mesh(vertices + place, triangles)
+        elif body == "sphere":
+            scene.add_spheres([place], 1)
+        else:
+            low, high = np.array(place) - 0.7, np.array(place) + [0.3, 0.4, 0.5]
+            corners = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)]) * (high - low) + low
+            faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
+            scene.add_mesh(corners, [[f[0], f[i], f[i + 1]] for f in faces for i in (1, 2)])
+        o = (rng.normal(size=(4000, 3)) * 3 + place).astype(kind)
+        d = (rng.uniform(-0.6, 0.6, (4000, 3)) + place - o).astype(kind)
+        hits = scene.closest_hit(o, d, fields=("t", "normal"))
+        onto = hits.hit & ((hits.normal * d).sum(axis=-1) < 0)
+        assert onto.sum() > 1000
+        out = rng.normal(size=(4000, 3))
+        out -= hits.normal * (out * hits.normal).sum(axis=-1, keepdims=True)  # along the surface, or up to a degree off
+        out += hits.normal * rng.choice([1e-6, 1e-3, 0.02, 1], 4000)[:, None]
+        starts = scene.offset_origins(hits, out)
+        assert starts.dtype == kind and starts.shape == (4000, 3)
+        assert not scene.any_hit(starts[onto], out[onto].astype(kind)).any(), body
+        inwards = scene.offset_origins(hits, -hits.normal)
+        assert (scene.count_hits(inwards[onto], -hits.normal[onto].astype(kind)) == 1).all(), body
+
+
+def test_meshes_are_given_back(tmp_path, ball_mesh):
+    vertices, triangles = ball_mesh
+    scene = kdray.Scene()
+    id = scene.add_mesh(vertices, triangles)
+    v, t = scene.mesh(id)
+    np.testing.assert_array_equal(v, vertices)
+    np.testing.assert_array_equal(t, triangles)
+    scene.update_vertices(id, 2 * vertices)
+    np.testing.assert_array_equal(scene.mesh(id)[0], 2 * vertices)
+    (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 0.1 0\nv 0 1 0\nv 1 1 0\nf 1 2 4 3\n")
+    v, t = kdray.load(tmp_path / "a.obj").mesh()
+    assert v.tolist() == [[0, 0, 0], [1, 0.1, 0], [0, 1, 0], [1, 1, 0]] and t.shape == (2, 3)
+    assert scene.mesh(scene.add_spheres([0, 0, 0], 1))[1].shape == (0, 3)
+    with pytest.raises(kdray.errors.UsageError):
+        scene.mesh(99)

@@ -9,6 +9,7 @@
 //         answered from the state before until commit() returns.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -74,6 +75,12 @@ struct Part {
   std::uint32_t first = 0, count = 0;  // by number
 };
 
+// Triangles in the order of their numbers.
+struct MeshArrays {
+  std::vector<std::array<double, 3>> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;  // numbers of vertices
+};
+
 struct MaterialInfo {
   std::string name;  // that the file gives it; empty: none
   std::uint32_t primitives = 0;
@@ -125,6 +132,9 @@ class Scene {
   // have none.
   std::vector<Part> parts(GeometryId geometry) const;
   std::vector<Part> instance_parts(GeometryId geometry) const;
+  // The triangles of a geometry as it was given or read, where they are now: of a file those that it doesn't
+  // keep as instances.
+  MeshArrays mesh(GeometryId geometry) const;
   // The materials that hits may have: the file's, then those that were added.
   std::vector<MaterialInfo> materials() const;
   // Of a hit: the name of its part, or else of its geometry; and the place of its material in materials().
