@@ -46,6 +46,8 @@ class Camera:
         numbers = [float(x) for x in (*self.origin, *self.target, *self.up, *lens)]
         if len(numbers) != 14:
             raise UsageError("a camera's origin, target and up have three coordinates each")
+        if not self.ortho_width and not 0 < self.fov < 180:
+            raise UsageError(f"a camera's fov is above 0 and below 180 degrees, not {self.fov}")
         return numbers
 
 

@@ -18,13 +18,13 @@ Rays = tuple[npt.NDArray[Any], npt.NDArray[Any]]
 def pinhole_rays(camera: Camera, width: int, height: int, *, dtype: npt.DTypeLike = np.float32) -> Rays:
     """Origins and directions of the rays through the pixels' centres, each of shape (height, width, 3).
 
-    They are the eye rays of `Scene.render` with that camera: row 0 is the top. Directions of a perspective camera
-    reach the plane at distance 1, so that t is the depth along the view; an orthographic one's are of length 1.
+    They are the eye rays of `Scene.render` with that camera (`hither` is for a t_min): row 0 is the top. Directions of
+    a perspective camera reach the plane at distance 1, so that t is the depth along the view, where the picture's
+    channel "depth" is the distance from the eye; an orthographic one's are of length 1.
     """
     if width < 1 or height < 1:
         raise errors.UsageError(f"a picture of {width} x {height} has no pixels")
-    if not camera.ortho_width and not 0 < camera.fov < 180:
-        raise errors.UsageError(f"a camera's angle of view is above 0 and below 180 degrees, not {camera.fov}")
+    camera.numbers()  # checks them
     origin, forward, right, up = _frame(camera)
     x = (np.arange(width) + 0.5) / width * 2 - 1
     y = 1 - (np.arange(height) + 0.5) / height * 2

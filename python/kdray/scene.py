@@ -785,8 +785,9 @@ class Scene:
         `look`: where the scene has neither a camera nor lights of its own, "studio" shows it in soft light that
         follows the camera, on a floor before a backdrop; "plain" by two lights before the background.
         `samples` per pixel (1, or 8 in a studio), or `adaptive`: as many as each pixel needs (a float: the error in
-        linear RGB that is aimed at). `depth`: 1 is the eye ray alone. `channels`: of "depth", "normal", "primitive",
-        "instance", "cost", "samples", "queue".
+        linear RGB that is aimed at). `depth`: 1 is the eye ray alone. `channels`: of "depth" (from
+        the eye), "normal" (as shading has it, towards the viewer: normal.x, normal.y and normal.z of the picture's
+        channels), "primitive", "instance", "cost", "samples", "queue".
         `min_weight`: rays that change a pixel by less are left out; 0 traces all.
         """
         named = [channels] if isinstance(channels, str) else list(channels)

@@ -35,3 +35,17 @@ def test_a_camera_that_looks_nowhere():
         kdray.pinhole_rays(kdray.Camera((0, 0, 0), (0, 0, 0)), 4, 4)
     with pytest.raises(kdray.UsageError, match="no pixels"):
         kdray.pinhole_rays(kdray.Camera(), 0, 4)
+
+
+@pytest.mark.parametrize("fov", [0, 180, 200, -10, float("nan")])
+def test_cameras_see_less_than_half_of_the_world(fov):
+    camera = kdray.Camera(fov=fov)
+    for ask in (lambda: kdray.pinhole_rays(camera, 4, 4), lambda: kdray.Scene().render(camera, (4, 4))):
+        with pytest.raises(kdray.errors.UsageError, match="fov"):
+            ask()
+
+
+@pytest.mark.parametrize("steps", [0, -4, 4.5])
+def test_a_sweep_has_whole_steps(steps):
+    with pytest.raises(kdray.errors.UsageError, match="steps"):
+        kdray.lidar_rays([0, 0, 0], [0], steps=steps)
