@@ -30,6 +30,7 @@ scene::View view_of(const View& view) {
                 .from = vector_of(view.from),
                 .at = vector_of(view.at),
                 .up = vector_of(view.up),
+                .side = vector_of(view.side),
                 .vertical_fov = {},
                 .ortho_width = view.ortho_width,
                 .aperture = view.aperture,

@@ -26,6 +26,11 @@ constexpr std::array<std::string_view, 3> kDivisions = {"bag", "contiguous", "in
 constexpr std::array<std::string_view, 3> kBalances = {"sah", "pilot", "dynamic"};
 constexpr std::array<std::string_view, 2> kGrids = {"centers", "corners"};
 constexpr std::array<std::string_view, 2> kLooks = {"plain", "studio"};
+// From above and below nearly: what is up must not be ahead.
+constexpr std::array<std::string_view, 7> kSideNames = {"front", "back",   "left", "right",
+                                                        "top",   "bottom", "iso"};
+constexpr std::array<View::Vector, 7> kSides = {
+    {{0, 0, 1}, {0, 0, -1}, {-1, 0, 0}, {1, 0, 0}, {0, 1, 1e-3}, {0, -1, 1e-3}, {1, 1, 1}}};
 
 }  // namespace
 
@@ -133,8 +138,14 @@ void add_view_options(CLI::App& app, ViewOptions& options) {
              options.look = static_cast<Look>(parse_choice("--look", text, kLooks));
            })
       ->group(group);
-  add("--from", "X,Y,Z", "Where the camera is (default: the scene's, or where all is in the picture)",
+  CLI::Option* const from = add(
+      "--from", "X,Y,Z", "Where the camera is (default: the scene's, or where all is in the picture)",
       [&view](const std::string& name, const std::string& text) { view.from = parse_vector(name, text); });
+  add("--view", shape_of(kSideNames), "All of the scene from a side, in place of the file's camera",
+      [&view](const std::string& name, const std::string& text) {
+        view.side = kSides[parse_choice(name, text, kSideNames)];
+      })
+      ->excludes(from);
   add("--at", "X,Y,Z", "What it looks at",
       [&view](const std::string& name, const std::string& text) { view.at = parse_vector(name, text); });
   add("--up", "x|y|z|-x|-y|-z|X,Y,Z", "What is up: an axis (of scans often z), or a direction",

@@ -68,7 +68,8 @@ void check_sequence(const RenderArgs& o) {
     refuse("a sequence has a file for each frame; standard input and output have room for one");
   if (!o.output.empty() && !o.write.format) image::format_for_writing(o.output);  // before it is numbered
   const View& v = o.view.view;
-  if (!o.checkpoint.camera_path.empty() && (v.camera || v.from || v.at || v.up || v.fov || v.ortho_width))
+  if (!o.checkpoint.camera_path.empty() &&
+      (v.camera || v.from || v.at || v.up || v.side || v.fov || v.ortho_width))
     refuse(
         "--camera-path says where the camera is; leave --from, --at, --up, --fov, --camera and --ortho out");
 }
@@ -113,6 +114,7 @@ std::string settings_of(const RenderArgs& o) {
   add("--from", in_text(v.from));
   add("--at", in_text(v.at));
   add("--up", in_text(v.up));
+  add("--view", in_text(v.side));
   add("--fov", in_text(v.fov));
   add("--ortho", in_text(v.ortho_width));
   add("--aperture", in_text(v.aperture));

@@ -33,6 +33,7 @@ View view_of(const ViewRequest& request, const Settings& settings) {
   view.from = request.camera.from;
   view.at = request.camera.at;
   view.up = request.camera.up;
+  view.side.reset();
   view.fov.reset();
   view.ortho_width.reset();
   if (request.camera.ortho_width > 0)

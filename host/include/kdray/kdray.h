@@ -34,6 +34,8 @@ struct View {
   using Vector = std::array<double, 3>;
   std::optional<int> camera = {};  // of those that the file has, from 0
   std::optional<Vector> from = {}, at = {}, up = {};
+  // The way from the scene's middle to a camera that shows all of it, in place of the file's, with y up.
+  std::optional<Vector> side = {};
   std::optional<double> fov = {};  // of the picture's full height, in degrees
   // An orthographic camera: the picture's width in the scene's units; 0: as wide as the scene needs.
   std::optional<double> ortho_width = {};

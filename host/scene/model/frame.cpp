@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kFov = 0.6981317007977318;  // 40 degrees
 constexpr double kMargin = 1.05;             // of the half picture: 2.5% of its height stay free on each side
+const dvec3 kThreeQuarter(0.8, 0.6, 1.2);
 constexpr float kKey = 0.75f, kFill = 0.25f;
 
 // Returns the power of two that brings the box to a size of about 1. Cameras are made at that size.
@@ -55,14 +56,15 @@ void add_lights_for_camera(Scene& scene, const DBox& box) {
   }
 }
 
-// Returns a view from the front, the right and above (y is up, as in glTF and most OBJ files, unless `wanted`
-// has another direction) onto `wanted.at`, from as near as lets all eight corners of the box into the
-// picture.
-Camera three_quarter_view(const DBox& world, const Camera& wanted, double aspect) {
+// Returns a view from a side, by default from the front, the right and above (y is up, as in glTF and most
+// OBJ files, unless `wanted` has another direction), onto `wanted.at`, from as near as lets all eight corners
+// of the box into the picture.
+Camera view_of_all(const DBox& world, const Camera& wanted, double aspect,
+                   const dvec3& side = kThreeQuarter) {
   const double scale = scale_of(world);
   Camera camera = wanted;
   camera.at *= scale;
-  const dvec3 away = turned_to(camera.up, glm::normalize(dvec3(0.8, 0.6, 1.2)));
+  const dvec3 away = turned_to(camera.up, glm::normalize(side));
   camera.from = camera.at + away;
   double distance =
       distance_to_fit(corners_of({world.lo * scale, world.hi * scale}), camera, aspect, kMargin);
@@ -220,7 +222,7 @@ void frame_scene(Scene& scene, const Framed& framed) {
   if (!scene.camera) {
     const double scale = box.empty() ? 1 : scale_of(box);
     const Camera usual{.at = DBox{box.lo * scale, box.hi * scale}.center() / scale, .vertical_fov = kFov};
-    scene.camera = box.empty() ? Camera{} : three_quarter_view(box, usual, aspect_of(scene.settings));
+    scene.camera = box.empty() ? Camera{} : view_of_all(box, usual, aspect_of(scene.settings));
   }
   if (scene.framing.lights) add_lights(scene);
 }
@@ -254,6 +256,13 @@ Light headlight(const Camera& camera, double strength) {
   return light;
 }
 
+// A camera that looks down or up has an up that leans.
+dvec3 nearest_axis(const dvec3& up) {
+  const dvec3 size = glm::abs(up);
+  if (size.y >= size.x && size.y >= size.z) return {0, std::copysign(1.0, up.y), 0};
+  return size.z >= size.x ? dvec3(0, 0, std::copysign(1.0, up.z)) : dvec3(std::copysign(1.0, up.x), 0, 0);
+}
+
 void check(const Camera& camera) {
   if (const char* const fault = fault_of(camera))
     throw Error(ErrorCode::usage, std::string("the view: ") + fault + "; give other --from, --at or --up");
@@ -263,19 +272,23 @@ void check(const Camera& camera) {
 
 Camera camera_of(const Scene& scene, const View& view, double aspect) {
   Camera camera = view.camera ? numbered_camera(scene, *view.camera) : scene.camera.value_or(Camera{});
-  const bool made_up = scene.framing.camera && !view.camera;
+  const DBox& box = scene.framing.box;
+  const bool made_up = (scene.framing.camera || (view.side && !box.empty())) && !view.camera;
+  if (made_up && !scene.framing.camera)
+    camera = {.at = box.center(), .up = nearest_axis(camera.up), .vertical_fov = kFov};
   if (made_up && scene.framing.studio) set_studio_camera(camera, scene.framing, view, aspect);
   if (view.from) camera.from = *view.from;
   if (view.at) camera.at = *view.at;
   if (view.up) camera.up = *view.up;
   if (view.vertical_fov) camera.vertical_fov = *view.vertical_fov, camera.ortho_width = 0;
   if (made_up && !scene.framing.studio && !view.from)
-    camera = three_quarter_view(scene.framing.box, camera, std::min(aspect, aspect_of(scene.settings)));
+    camera = view_of_all(box, camera, std::min(aspect, aspect_of(scene.settings)),
+                         view.side.value_or(kThreeQuarter));
   check(camera);
   if (view.ortho_width && *view.ortho_width > 0)
     camera.ortho_width = *view.ortho_width;
   else if (view.ortho_width)
-    camera.ortho_width = width_of(scene.framing.box, camera, aspect);
+    camera.ortho_width = width_of(box, camera, aspect);
   if (view.aperture) camera.aperture = *view.aperture;
   if (view.focus) camera.focus = *view.focus;
   return camera;

@@ -73,6 +73,7 @@ void add_lights(Scene& scene);
 struct View {
   std::optional<int> camera = {};  // of Scene::cameras
   std::optional<dvec3> from = {}, at = {}, up = {};
+  std::optional<dvec3> side = {};  // the way from the middle to a camera that is made up, with y up
   std::optional<double> vertical_fov = {};
   std::optional<double> ortho_width = {};  // parallel eye rays; 0: as wide as the scene needs
   std::optional<double> aperture = {}, focus = {};

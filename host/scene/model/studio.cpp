@@ -62,7 +62,7 @@ void place_before(Camera& camera, const DBox& world, const dvec3& away, bool kee
 
 void set_studio_camera(Camera& camera, const Framing& framing, const View& view, double aspect) {
   const Studio& studio = *framing.studio;
-  const bool inside = studio.room && !view.from;
+  const bool inside = studio.room && !view.from && !view.side;
   camera.up = view.up.value_or(studio.up);
   camera.vertical_fov = view.vertical_fov.value_or(inside ? kRoomFov : kStudioFov);
   if (view.at) camera.at = *view.at;
@@ -72,7 +72,8 @@ void set_studio_camera(Camera& camera, const Framing& framing, const View& view,
     if (!view.at) camera.at = studio.room->at;
     return;
   }
-  const dvec3 away = studio.open_to.value_or(turned_to(camera.up, glm::normalize(kFrontRightAbove)));
+  const dvec3 usual = turned_to(camera.up, glm::normalize(view.side.value_or(kFrontRightAbove)));
+  const dvec3 away = view.side ? usual : studio.open_to.value_or(usual);
   place_before(camera, framing.box, away, view.at.has_value(), aspect);
 }
 

@@ -287,5 +287,54 @@ TEST(ViewOptions, WhatMakesNoViewIsRefused) {
   EXPECT_TRUE(refuses({"--camera", "3"}, "has one camera, number 0"));
 }
 
+// Of three balls along the axes, red, green and blue, those that lie towards the right and upwards.
+TEST_F(ViewTest, SidesShowAllOfTheSceneFromThere) {
+  const auto ball = [](const std::string& at, const std::string& color) {
+    return R"({"type": "sphere", "center": )" + at + R"(, "radius": 0.3, "material": {"emission": )" + color +
+           "}}";
+  };
+  const std::string objects = R"("objects": [)" + ball("[2,0,0]", "[1,0,0]") + ", " +
+                              ball("[0,2,0]", "[0,1,0]") + ", " + ball("[0,0,2]", "[0,0,1]") + ", " +
+                              ball("[0,0,0]", "[0.5,0.5,0.5]") + "]}";
+  folder.put("bare.json", "{" + objects);
+  folder.put(
+      "seen.json",
+      R"({"camera": {"from": [0, 0, 9], "at": [0, 0, 99], "up": [0, 0.8, 0.6]}, "lights": [], )" + objects);
+  // Where a colour's middle is seen: to the right and up, from -1 to 1.
+  const auto middle = [](const image::Image& image, int c) {
+    dvec3 sum(0);
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) {
+        const vec3 p = image.pixels[static_cast<std::size_t>(y * image.width + x)];
+        if (p[c] > 0.75f && p[c] > p[(c + 1) % 3] + 0.3f && p[c] > p[(c + 2) % 3] + 0.3f)
+          sum += dvec3(2.0 * x / image.width - 1, 1 - 2.0 * y / image.height, 1);
+      }
+    EXPECT_GT(sum.z, 0) << "it is in the picture: " << c;
+    return sum / sum.z;
+  };
+  struct Side {
+    const char* name;
+    int right, up;  // which colour lies farthest there
+  };
+  for (const char* const scene : {"bare.json", "seen.json"})
+    for (const Side& side : {Side{"front", 0, 1}, {"left", 2, 1}, {"top", 0, -1}, {"iso", 0, 1}}) {
+      const image::Image image = rendered(scene, {"--look=plain", "--view", side.name, "--size=64"});
+      const std::array at = {middle(image, 0), middle(image, 1), middle(image, 2)};
+      for (int c = 0; c < 3; ++c) {
+        EXPECT_GE(at[static_cast<std::size_t>(side.right)].x, at[static_cast<std::size_t>(c)].x) << side.name;
+        if (side.up >= 0) {
+          EXPECT_GE(at[static_cast<std::size_t>(side.up)].y, at[static_cast<std::size_t>(c)].y) << side.name;
+        } else {
+          EXPECT_LE(at[2].y, at[static_cast<std::size_t>(c)].y) << side.name;
+        }
+      }
+    }
+  const image::Image upright = rendered("bare.json", {"--look=plain", "--view=front", "--up=z", "--size=64"});
+  EXPECT_GT(middle(upright, 2).y, middle(upright, 0).y) << "z is up";
+  EXPECT_GT(middle(upright, 0).x, middle(upright, 2).x);
+  EXPECT_TRUE(
+      fails_with(kdray({"render", folder / "bare.json", "--view=front", "--from=1,2,3"}), 2, "--from"));
+}
+
 }  // namespace
 }  // namespace kdray::test
