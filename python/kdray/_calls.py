@@ -11,7 +11,10 @@ MOST = 60  # characters of an argument
 
 
 def short(value: Any) -> str:
-    text = repr(value).replace("\n", " ")
+    try:
+        text = repr(value).replace("\n", " ")
+    except Exception:
+        text = type(value).__name__
     return text if len(text) <= MOST else text[: MOST - 3] + "..."
 
 
@@ -21,8 +24,8 @@ def in_one_line(function: Callable[..., Any], name: str) -> Callable[..., Any]:
         try:
             return function(*args, **named)
         except TypeError as error:
-            if "incompatible function arguments" not in str(error):
-                raise
+            if "incompatible function arguments" not in str(error) or "kdray._core." not in str(error):
+                raise  # of the caller's own functions, perhaps
             given = [short(a) for a in args[1:]] + [f"{key}={short(a)}" for key, a in named.items()]
         raise TypeError(
             f"{name}({', '.join(given)}): an argument is of a type, or a number, that it can't be; see help({name})"

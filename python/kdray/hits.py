@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
+
+from ._arrays import RayArrays
 
 Array = npt.NDArray[Any]
 
@@ -50,8 +51,8 @@ class Hits(_Columns):
         "_normal",
         "_point",
         "_point_given",
-        "_point_later",
         "_primitive",
+        "_rays",
         "_t",
         "_u",
         "_v",
@@ -69,11 +70,11 @@ class Hits(_Columns):
     v = _column("v", 'The weight of a triangle\'s third corner: float32, or as t where geometry is "double" or "auto".')
     normal = _column("normal", "(..., 3) of unit length, of the surface itself; 0 for a miss.")
 
-    def __init__(self, columns: dict[str, Array], point_later: Callable[[Array], Array] | None = None) -> None:
+    def __init__(self, columns: dict[str, Array], rays: RayArrays | None = None) -> None:
         for name in self._names:
             setattr(self, "_" + name, columns.get(name))
         self._point_given = self._point is not None
-        self._point_later = point_later
+        self._rays = rays
 
     @property
     def point(self) -> Array:
@@ -81,17 +82,17 @@ class Hits(_Columns):
 
         Unless it is named in ``fields=``, it is computed when it is first read, from the rays as they are then.
         """
-        if self._point is None and self._point_later is not None and self._t is not None:
-            self._point = self._point_later(self._t)
+        if self._point is None and self._rays is not None and self._t is not None:
+            self._point = self._rays.points_at(self._t)
         if self._point is None:
             raise AttributeError("point was not asked for: name it in fields=")
         return self._point
 
-    def _now_of(self, point_later: Callable[[Array], Array]) -> None:
+    def _now_of(self, rays: RayArrays) -> None:
         """Other rays' answers have been written into the arrays."""
         if not self._point_given:
             self._point = None
-        self._point_later = point_later
+        self._rays = rays
 
     @property
     def hit(self) -> npt.NDArray[np.bool_]:

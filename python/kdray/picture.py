@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import os
 from typing import Any
 
@@ -29,15 +30,42 @@ class Picture(np.ndarray[Any, np.dtype[np.float32]]):
     ) -> Picture:
         """Pixels (height, width, 3), linear; for `save` of whatever a program has computed."""
         picture = np.asarray(pixels, dtype=np.float32).view(cls)
-        picture._channels = channels or {}
-        picture._laid = (picture.shape, picture.strides)
+        picture.channels = channels or {}
         picture.warnings = warnings or []
         return picture
 
     def __array_finalize__(self, of: Any) -> None:
-        self._channels = getattr(of, "_channels", {})
-        self._laid = getattr(of, "_laid", ())
+        # A view of a picture may show all of it as it is; what has other memory is another one, unless a method below
+        # says that it isn't.
+        is_view = isinstance(of, Picture) and self.ctypes.data == of.ctypes.data
+        self._channels = of.channels if is_view else {}
+        self._laid = of._laid if is_view else ()
         self.warnings = getattr(of, "warnings", [])
+
+    def __array_wrap__(self, array: Any, *context: Any) -> Any:
+        return self._lend(super().__array_wrap__(array, *context))  # what arithmetic has made
+
+    def copy(self, order: Any = "C") -> Picture:
+        """A copy, with the channels."""
+        made: Picture = self._lend(super().copy(order))
+        return made
+
+    def astype(self, *args: Any, **named: Any) -> Any:
+        """Numbers of another type, with the channels."""
+        return self._lend(super().astype(*args, **named))
+
+    def __copy__(self) -> Picture:
+        return self.copy()
+
+    def __deepcopy__(self, memo: Any) -> Picture:
+        made = self.copy()
+        made.channels = copy.deepcopy(made.channels, memo)
+        return made
+
+    def _lend(self, made: Any) -> Any:
+        if isinstance(made, Picture) and made is not self and made.shape == self.shape:
+            made.channels = self.channels
+        return made
 
     @property
     def channels(self) -> dict[str, npt.NDArray[np.float32]]:
@@ -46,6 +74,10 @@ class Picture(np.ndarray[Any, np.dtype[np.float32]]):
         What is cut out of a picture, or turned, has none: they would no longer fit.
         """
         return self._channels if (self.shape, self.strides) == self._laid else {}
+
+    @channels.setter
+    def channels(self, channels: dict[str, npt.NDArray[np.float32]]) -> None:
+        self._channels, self._laid = channels, (self.shape, self.strides)
 
     def __reduce__(self) -> Any:
         return Picture, (np.asarray(self), self.channels, self.warnings)

@@ -67,7 +67,7 @@ def lidar_rays(
     """
     place, _ = vectors(positions, "positions")
     if azimuths is None:
-        if steps < 1 or steps != int(steps):
+        if not (steps >= 1 and steps // 1 == steps):
             raise errors.UsageError(f"steps is a whole number from 1 on, not {steps}")
         azimuths = np.arange(steps) * (360.0 / steps)
     a = np.radians(np.asarray(azimuths, np.float64).reshape(-1))

@@ -416,18 +416,22 @@ class Scene:
         """Origins of rays that leave what was hit, for shadows, reflections and ambient occlusion.
 
         These are `hits.point`, moved along `hits.normal` to the side that `directions` (broadcast to the hits) go to,
-        by what rounding may have moved them: some 2e-6 of the scene's size, with doubles of double geometry 1e-14 of
-        it. A ray that began at `hits.point` itself would meet its own surface as often as not.
+        by what rounding may have moved them: some 2e-6 of the scene's size (with doubles of double geometry 1e-14), and
+        roundings of the way that the ray has come. A ray that began at `hits.point` itself would meet its own surface
+        as often as not.
         """
-        point, normal = hits.point, hits.normal
+        point, normal, rays = hits.point, hits.normal, hits._rays
         bounds = self.bounds
         size = 0.0 if bounds is None else float(np.abs(bounds[1] - bounds[0]).max())
         in_floats = point.dtype == np.float32
-        exact = self._in_doubles and not in_floats
-        far = np.abs(point).max(axis=-1, keepdims=True, initial=0.0)
-        move = (2.0**-46 if exact else 2.0**-19) * size + (2.0**-21 if in_floats else 2.0**-50) * far
+        way = np.abs(point).max(axis=-1, keepdims=True, initial=0.0)
+        if rays is not None:
+            start = np.abs(rays.origins).max(axis=-1, initial=0.0)
+            way = way + (start.reshape(*way.shape) if len(start) == rays.n else start)
+        share = 2.0**-46 if self._in_doubles and not in_floats else 2.0**-19
+        move = share * size + (2.0**-21 if in_floats else 2.0**-50) * way
         along = (np.asarray(directions, np.float64) * normal).sum(axis=-1, keepdims=True)
-        move = np.copysign(np.where(np.isfinite(far), move, 0.0), along)  # a miss stays where it is
+        move = np.copysign(np.where(np.isfinite(move), move, 0.0), along)  # a miss stays where it is
         return np.asarray(point + move * normal, point.dtype)
 
     @property
@@ -627,8 +631,8 @@ class Scene:
 
         in_parts(rays, rows, ask, progress, "closest_hit")
         if out is None:
-            return Hits(columns, rays.points_at)
-        out._now_of(rays.points_at)
+            return Hits(columns, rays)
+        out._now_of(rays)
         return out
 
     def any_hit(

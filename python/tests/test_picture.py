@@ -1,5 +1,6 @@
 """Pictures: what they show, and files."""
 
+import copy
 import pickle
 
 import numpy as np
@@ -166,8 +167,20 @@ def test_colours_may_be_written_as_the_web_does(lit):
 def test_a_turned_picture_has_no_channels_that_do_not_fit(lit):
     picture = lit.render(kdray.Camera((0, 1, 5)), (8, 8), channels="depth", look="plain")
     assert set(picture.channels) == {"depth"}
-    assert set((picture * 0.5).channels) == {"depth"} and set(picture[:].channels) == {"depth"}
-    assert np.flipud(picture).channels == picture[::-1].channels == picture.transpose(1, 0, 2).channels == {}
+    kept = [picture * 0.5, 2 - picture, picture[:], picture.copy(), copy.copy(picture), copy.deepcopy(picture)]
+    kept += [picture * np.array([1.1, 1, 0.9]), picture.astype(np.float64), np.clip(picture, 0, 1), np.sqrt(picture)]
+    kept += [pickle.loads(pickle.dumps(picture))]
+    for same in kept:
+        np.testing.assert_array_equal(same.channels["depth"], picture.channels["depth"])
+    turned = [np.flipud(picture), picture[::-1], picture.transpose(1, 0, 2), np.rot90(picture), np.roll(picture, 1, 0)]
+    turned += [picture[np.arange(7, -1, -1)], np.take(picture, [0] * 8, axis=0), picture[:4], picture[..., 0]]
+    for other in turned:
+        for now in (other, other.copy(), other * 1.0, copy.copy(other), other.astype(np.float64)):
+            assert now.channels == {}
+    picture *= 2
+    assert set(picture.channels) == {"depth"}
+    picture.channels = {}
+    assert picture.channels == {}
     with pytest.raises(ValueError, match="no pixels"):
         kdray.Picture(np.zeros((0, 4, 3))).save("a.png")
 

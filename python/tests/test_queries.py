@@ -519,3 +519,22 @@ def test_meshes_are_given_back(tmp_path, ball_mesh):
     assert scene.mesh(scene.add_spheres([0, 0, 0], 1))[1].shape == (0, 3)
     with pytest.raises(kdray.errors.UsageError):
         scene.mesh(99)
+
+
+@pytest.mark.parametrize("geometry", ["float", "double"])
+@pytest.mark.parametrize("kind", [np.float32, np.float64])
+@pytest.mark.parametrize("far", [10, 1e3, 1e5])
+def test_rays_from_far_off_leave_what_they_hit(ball_mesh, rng, geometry, kind, far):
+    scene = kdray.Scene(geometry=geometry)
+    scene.add_mesh(*ball_mesh)
+    o = rng.normal(size=(2000, 3))
+    o = (far * o / np.linalg.norm(o, axis=-1, keepdims=True)).astype(kind)
+    d = (rng.uniform(-0.5, 0.5, (2000, 3)) - o).astype(kind)
+    hits = scene.closest_hit(o, d)
+    normal = np.where((hits.normal * d).sum(axis=-1, keepdims=True) < 0, 1, -1) * hits.normal
+    starts = scene.offset_origins(hits, normal)
+    assert hits.hit.sum() > 1500 and not scene.any_hit(starts[hits.hit], normal[hits.hit].astype(kind)).any()
+    one = scene.closest_hit(o[0], d[0])
+    assert scene.offset_origins(one, normal[0]).shape == (3,)
+    same = scene.closest_hit(o[0], d)  # from one place
+    assert scene.offset_origins(same, same.normal).shape == (2000, 3)

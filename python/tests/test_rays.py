@@ -45,7 +45,7 @@ def test_cameras_see_less_than_half_of_the_world(fov):
             ask()
 
 
-@pytest.mark.parametrize("steps", [0, -4, 4.5])
+@pytest.mark.parametrize("steps", [0, -4, 4.5, float("nan"), float("inf")])
 def test_a_sweep_has_whole_steps(steps):
     with pytest.raises(kdray.errors.UsageError, match="steps"):
         kdray.lidar_rays([0, 0, 0], [0], steps=steps)

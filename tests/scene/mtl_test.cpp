@@ -200,6 +200,8 @@ TEST(MaterialsOfObj, AreOpaqueWhereNothingWouldBeSeen) {
   };
   EXPECT_EQ(transmit_of("newmtl m\nTr 1\nnewmtl n\nd 0\n"), (std::array{0.0f, 0.0f}));
   EXPECT_EQ(transmit_of("newmtl m\nTr 1\nnewmtl n\nd 0.5\n"), (std::array{1.0f, 0.5f}));
+  EXPECT_EQ(transmit_of("newmtl m\nTr 1\nKe 1 0 0\nnewmtl n\nd 0\n"), (std::array{1.0f, 1.0f}));
+  EXPECT_EQ(transmit_of("newmtl m\nTr 1\nillum 3\nKs 0.5 0.5 0.5\nnewmtl n\nd 0\n")[1], 1);
   EXPECT_EQ(transmit_of("newmtl m\nTr 1\nNi 1.5\nillum 6\nnewmtl n\nd 0\n"), (std::array{1.0f, 1.0f}));
 }
 

@@ -286,7 +286,7 @@ Prepared in_studio(const Prepared& prepared, bool instead) {
   Prepared made = prepared;
   scene::Framing& framing = made.settings.framing;
   if (framing.box.empty()) return made;
-  if (instead && !framing.camera) made.settings.camera = scene::Camera{};
+  if (instead && !framing.camera) made.settings.camera = scene::Camera{.at = framing.box.center()};
   if (instead) framing.camera = framing.lights = true;
   if (!framing.camera || !framing.lights) return made;
   framing.studio = studio_of(prepared);

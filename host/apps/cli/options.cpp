@@ -187,9 +187,9 @@ std::string shape_of(std::span<const std::string_view> names) {
 
 CLI::Option* add_list(CLI::App& app, const std::string& name, const std::string& help,
                       std::span<const std::string_view> names, std::vector<std::string>& chosen) {
-  return add_text(
-      app, name, shape_of(names) + "[,...]", help,
-      [name, names, &chosen](const std::string& text) { chosen = parse_list(name, text, names); });
+  return add_text(app, name, shape_of(names) + "[,...]", help,
+                  [name, names, &chosen](const std::string& text) { chosen = parse_list(name, text, names); })
+      ->multi_option_policy(CLI::MultiOptionPolicy::Throw);  // one might want both lists
 }
 
 CLI::Option* add_int(CLI::App& app, const std::string& name, const std::string& help, int lo, int hi,

@@ -110,9 +110,9 @@ void BuildNotice::watch() {
 bool keeps_kernels() {
   const char* const set = std::getenv("KDRAY_CACHE_DIR");
   if (set != nullptr && *set == '\0') return true;  // in the runtime's own cache
-  std::filesystem::path folder = default_program_folder();
-  if (folder.empty()) return false;
   std::error_code error;
+  std::filesystem::path folder = std::filesystem::absolute(default_program_folder(), error);
+  if (folder.empty() || error) return false;
   while (folder.has_relative_path() && !std::filesystem::exists(folder, error)) folder = folder.parent_path();
   return ::access(folder.c_str(), W_OK) == 0;
 }

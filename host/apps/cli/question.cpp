@@ -125,7 +125,7 @@ std::uint64_t answer_bytes(Question question) {
     case Question::count:
       return 4;
     case Question::closest_point:
-      return 48;
+      return 56;
     case Question::signed_distance:
       return 8;
     case Question::inside:

@@ -87,7 +87,8 @@ void check_transparent(const RenderArgs& o, const scene::Scene& scene) {
 
 // Checks the view before a tree is built for nothing.
 void check_view_of(const RenderArgs& o, const scene::Scene& asked) {
-  if (o.view.any) check_view(asked, o.view.view);
+  const bool of_file = !asks_for_studio(o.view) || o.view.view.camera;
+  if (o.view.any && of_file) check_view(asked, o.view.view);
   check_transparent(o, asked);
 }
 

@@ -186,9 +186,13 @@ void add_view_options(CLI::App& app, ViewOptions& options) {
       });
 }
 
+bool asks_for_studio(const ViewOptions& options) {
+  return options.look == Look::studio;
+}
+
 PreparedScene in_look(const PreparedScene& scene, const ViewOptions& options) {
-  const bool asked = options.look.has_value();
-  return options.look.value_or(Look::studio) == Look::studio ? scene.in_studio(asked) : scene;
+  return options.look.value_or(Look::studio) == Look::studio ? scene.in_studio(asks_for_studio(options))
+                                                             : scene;
 }
 
 void tell_of_view(const PreparedScene& scene, const ViewOptions& options) {

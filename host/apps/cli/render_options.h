@@ -31,6 +31,9 @@ struct ViewOptions {
 // --look --from --at --up --fov --camera --ortho --aperture --focus --headlight --background
 void add_view_options(CLI::App& app, ViewOptions& options);
 
+// Returns whether a studio is asked for, which stands in for a file's camera and lights as well.
+bool asks_for_studio(const ViewOptions& options);
+
 // Returns the scene in the look that is asked for.
 PreparedScene in_look(const PreparedScene& scene, const ViewOptions& options);
 

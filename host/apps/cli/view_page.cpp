@@ -162,11 +162,15 @@ int show_page(ViewArgs& args) {
   args.tree.binary_form = true;  // channels and cells are of it
   OpenedScene first(input_of(args.scenes.front(), args.load), args.tree, args.device, args.cache, args.quiet,
                     [&args](const scene::Scene& asked) {
-                      if (args.view.any) check_view(asked, args.view.view);
+                      if (args.view.any && !asks_for_studio(args.view)) check_view(asked, args.view.view);
                     });
   first.keep();
-  view::Settings settings{args.view.view, args.render, first.device(), args.load,
-                          args.view.look.value_or(Look::studio)};
+  view::Settings settings{args.view.view,
+                          args.render,
+                          first.device(),
+                          args.load,
+                          args.view.look.value_or(Look::studio),
+                          asks_for_studio(args.view)};
   view::LoadedScene loaded{first.scene(), {}};
   const PreparedScene shown = in_look(first.scene(), args.view);
   if (settings.look == Look::studio) loaded.studio = shown;

@@ -40,7 +40,7 @@ SceneRenderer::SceneRenderer(LoadedScene loaded, const Settings& settings)
 const PreparedScene& SceneRenderer::scene(kdray::Look look) const {
   if (look == kdray::Look::plain) return loaded_.scene;
   std::call_once(studio_made_, [this] {
-    if (!studio_) studio_ = loaded_.scene.in_studio();
+    if (!studio_) studio_ = loaded_.scene.in_studio(settings_.studio_instead);
   });
   return *studio_;
 }

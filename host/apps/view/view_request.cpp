@@ -138,7 +138,10 @@ std::string command_for(const ViewRequest& request, const Settings& settings, co
   if (settings.load.texture_bytes > 0)
     text += fmt::format(" --texture-memory {}", settings.load.texture_bytes);
   if (!settings.load.asset_root.empty()) text += " --asset-root " + quoted(settings.load.asset_root.string());
-  if (look_of(request, settings) == kdray::Look::plain) text += " --look plain";
+  if (look_of(request, settings) == kdray::Look::plain)
+    text += " --look plain";
+  else if (settings.studio_instead)
+    text += " --look studio";
   return text + view_options(view_of(request, settings)) + picture_options(options) +
          division_options(options, queues_of(request, settings));
 }

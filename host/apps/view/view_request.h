@@ -44,6 +44,7 @@ struct Settings {
   DeviceOptions device;
   LoadOptions load;
   kdray::Look look = kdray::Look::studio;
+  bool studio_instead = false;  // of a file's own camera and lights
 };
 
 View view_of(const ViewRequest& request, const Settings& settings);

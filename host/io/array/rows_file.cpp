@@ -115,7 +115,8 @@ RowsFile::RowsFile(const fs::path& path, const RowsWanted& wanted)
   const std::uint64_t size = kept_.empty() ? size_of(path) : kept_.size();
   std::string start(static_cast<std::size_t>(std::min<std::uint64_t>(kPreambleBytes, size)), '\0');
   read_bytes(start.data(), start.size());
-  looks_like_text(start) && size > 0 ? read_text(size, wanted) : read_header(size, wanted);
+  if (size == 0) throw input_error(name_, 0, "is empty", std::string("put the ") + wanted.name + " into it");
+  looks_like_text(start) ? read_text(size, wanted) : read_header(size, wanted);
 }
 
 void RowsFile::read_text(std::uint64_t size, const RowsWanted& wanted) {
@@ -131,8 +132,8 @@ void RowsFile::read_text(std::uint64_t size, const RowsWanted& wanted) {
   if (n_columns_ == 0) throw input_error(name_, 0, "has no line of numbers");
   if (!fits(n_columns_, wanted))
     throw input_error(name_, 0,
-                      "has lines of " + std::to_string(n_columns_) + " numbers but " + wanted.name +
-                          " have " + std::to_string(wanted.n_values),
+                      "has " + std::to_string(n_columns_) + " to a line but " + wanted.name + " have " +
+                          std::to_string(wanted.n_values),
                       std::string("columns are ") + wanted.columns);
   text_ = std::move(rows.values);
   n_rows_ = text_.size() / n_columns_;

@@ -25,7 +25,7 @@ struct RowsWanted {
   std::uint64_t n_short = 0;  // where rows may be shorter: rays without t_min and t_max
 };
 inline constexpr RowsWanted kRays{
-    "rays", 8, "origin x y z, t_min, direction x y z, t_max; or of N x 6 origin and direction", 6};
+    "rays", 8, "origin x y z, t_min, direction x y z, t_max; without t_min and t_max N x 6", 6};
 inline constexpr RowsWanted kPoints{"points", 3, "x y z"};
 
 class RowsFile {

@@ -105,7 +105,8 @@ bool is_read(const std::string& ending) {
 // Called before the file is read: a wrong ending should not cost the reading of gigabytes.
 void check_ending(const std::filesystem::path& file, const std::string& ending) {
   if (is_read(ending)) return;
-  if (std::filesystem::is_directory(file))
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error))
     throw input_error(file.string(), 0, "is a folder", "name a scene file in it");
   if (is_of_assimp(ending))
     throw input_error(file.string(), 0,
@@ -134,23 +135,23 @@ bool is_scene_name(const std::filesystem::path& file) {
 
 namespace {
 
-thread_local bool imports = false;
+thread_local bool keeps = false;
 
-struct Importing {
-  Importing() { imports = true; }
-  ~Importing() { imports = false; }
+struct Keeping {
+  explicit Keeping(bool texcoords) { keeps = texcoords; }
+  ~Keeping() { keeps = false; }
 };
 
 }  // namespace
 
-Scene import_scene(const std::filesystem::path& file) {
+Scene import_scene(const std::filesystem::path& file, bool keep_texcoords) {
   check_ending(file, format_of(file));
-  const Importing importing;
+  const Keeping keeping(keep_texcoords);
   return import_text(read_file(file), file, {});
 }
 
 bool keeps_texcoords() {
-  return imports;
+  return keeps;
 }
 
 namespace {

@@ -54,10 +54,10 @@ Scene read_assimp(std::string_view text,
 
 // Reads a file by its ending as load() does, but leaves the scene as the file has it: no camera or lights are
 // made up. For files that include others.
-Scene import_scene(const std::filesystem::path& file);
+// `keep_texcoords`: though the file names no picture, as one will be laid on.
+Scene import_scene(const std::filesystem::path& file, bool keep_texcoords = false);
 
-// Returns whether the file in work is read by import_scene(): readers then keep texture coordinates though it
-// names no picture, as the file that includes it may lay one on.
+// Returns whether readers keep them so of the file in work.
 bool keeps_texcoords();
 
 }  // namespace kdray::scene

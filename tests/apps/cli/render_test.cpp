@@ -479,6 +479,9 @@ TEST(RenderCommand, AStudioThatIsAskedForStandsInForTheFilesOwnView) {
   };
   const std::string studio = rendered(bare, {});
   EXPECT_EQ(rendered(lit, {"--look", "studio"}), studio);
+  EXPECT_EQ(rendered(lit, {"--look", "studio", "--from", "9,2,3"}), rendered(bare, {"--from", "9,2,3"}));
+  EXPECT_EQ(rendered(lit, {"--look", "studio", "--up", "z"}), rendered(bare, {"--up", "z"}))
+      << "as it looks along z";
   EXPECT_NE(rendered(lit, {}), studio);
   EXPECT_EQ(rendered(bare, {"--size", "9", "--size", "24"}), studio) << "the last one counts";
 }

@@ -170,6 +170,8 @@ TEST(ReadRays, ReadsTexts) {
       read_doubles(folder.put("r.csv", "ox,oy,oz,t_min,dx,dy,dz,t_max\r\n0.1,-2, 3e-300,0,1,0,-1,inf\r\n")),
       std::vector{first});
   EXPECT_EQ(read_doubles(folder.put("r.csv", "0.1;-2;3e-300;1;0;-1\n")), std::vector{first});
+  EXPECT_EQ(read_doubles(folder.put("r.csv", "\xef\xbb\xbf# \xc3\xa9\nx,\xc3\xa9\n0.1,-2,3e-300,1,0,-1\n")),
+            std::vector{first});
   EXPECT_EQ(RowsFile(folder.put("p.xyz", "1\t2\t3\n"), kPoints).size(), 1u);
 }
 
@@ -180,8 +182,16 @@ TEST(ReadRays, SaysWhatIsWrongWithTexts) {
   };
   EXPECT_TRUE(says("x y z\n1 2 3 a 5 6\n", "r.txt:2: 'a' is no number"));
   EXPECT_TRUE(says("1 2 3 4 5 6\n1 2 3\n", "r.txt:2: has 3 numbers, and the lines before it 6"));
-  EXPECT_TRUE(says("1 2 3\n", "has lines of 3 numbers but rays have 8"));
-  EXPECT_TRUE(says("1 2 3 4 5 1e400\n", "'1e400' is no number"));
+  EXPECT_TRUE(says("1 2 3\n", "has 3 to a line but rays have 8"));
+  EXPECT_TRUE(says("1 2 3 4 5 1e400\n", "r.txt:1: '1e400' is no number that a double holds"));
+  EXPECT_TRUE(says("0.2.1 1 1 1 1 1\n1 2 3 4 5 6\n", "r.txt:1: '0.2.1' is no number"));
+  EXPECT_TRUE(says("1.0D+00 1 1 1 1 1\n", "r.txt:1: '1.0D+00' is no number"));
+  EXPECT_TRUE(says("x 1 1 1 1 1\n", "r.txt:1: 'x' is no number"));
+  EXPECT_TRUE(says("+-1 1 1 1 1 1\n", "'+-1' is no number"));
+  EXPECT_TRUE(says("1,,2,3,4,5,6\n", "r.txt:1: nothing stands between two commas"));
+  EXPECT_TRUE(says("1,2,3,4,5,6,\n", "nothing stands"));
+  EXPECT_TRUE(says("1 2 3 4 5 \xc3\xa9\n", "?' is no number"));
+  EXPECT_TRUE(says("", "is empty"));
   EXPECT_TRUE(says("# nothing\n", "has no line of numbers"));
   EXPECT_TRUE(says("1 2 3 4 5 6 7 8\n\x01\x02", "neither a NumPy file nor a text"));
 }

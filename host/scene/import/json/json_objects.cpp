@@ -114,11 +114,13 @@ std::string name_in(const JsonNode& material) {
   return material.is_string() ? material.string() : std::string();
 }
 
-Scene imported(const std::filesystem::path& path, const JsonNode& name) {
+Scene imported(const std::filesystem::path& path, const JsonNode& name, bool keeps_texcoords) {
   try {
-    return import_scene(path);
+    return import_scene(path, keeps_texcoords);
   } catch (const Error&) {
-    if (std::filesystem::exists(path)) throw;
+    std::error_code error;
+    const auto status = std::filesystem::status(path, error);
+    if (std::filesystem::status_known(status) && std::filesystem::exists(status)) throw;
     throw name.error("no file " + path.string());
   }
 }
@@ -192,26 +194,29 @@ Material JsonObjects::material_of(const JsonNode& object) const {
   throw node->error("no material '" + name + "' in /materials", did_you_mean(name, names));
 }
 
-const Scene& JsonObjects::mesh(const JsonNode& file) {
+const Scene& JsonObjects::mesh(const JsonNode& file, bool keeps_texcoords) {
   const std::string name = file.string();
-  const auto it = meshes_.find(name);
+  const std::pair key(name, keeps_texcoords);
+  const auto it = meshes_.find(key);
   if (it != meshes_.end()) return it->second;
   const std::filesystem::path path = folder_ / name;
   if (format_of(path) == ".json") throw file.error("a scene cannot include another .json scene");
   const Instancing copied(Instances::flat);  // a part has no instances of its own
-  Scene& part = meshes_[name] = imported(path, file);
+  Scene& part = meshes_[key] = imported(path, file, keeps_texcoords);
   scene_.warnings.insert(scene_.warnings.end(), part.warnings.begin(), part.warnings.end());
   return part;
 }
 
 void JsonObjects::read_mesh(const JsonNode& object) {
   object.expect_keys(json_keys::kMesh);
-  Scene part = mesh(object["file"]);
+  const bool has_own = object.find("material").has_value();
+  const Material own = material_of(object);
+  Scene part = mesh(object["file"], has_own && own.maps != kNone);
   if (const auto smooth = object.find("smooth")) smooth_normals(part, smooth->number_between(0, 180));
   place(object, part);
-  if (object.find("material")) {
+  if (has_own) {
     part.texturing = {.texcoords = std::move(part.texturing.texcoords)};
-    wear(part, material_of(object));
+    wear(part, own);
     if (!shows_pictures(part)) part.texturing = {};
     if (shows_pictures(part) && part.texturing.texcoords[0].empty())
       scene_.warnings.push_back(
@@ -221,7 +226,6 @@ void JsonObjects::read_mesh(const JsonNode& object) {
       for (auto& shape : decltype(kind)::of(part)) shape.material = 0;
     });
   }
-  if (part.texturing.textures.empty()) part.texturing.texcoords = {};
   if (object.find("instances")) return append_instances(std::move(part), object);
   append(part, object);
 }

@@ -61,7 +61,7 @@ class JsonObjects {
   Material material_of(const JsonNode& object) const;
   void wear(Scene& part, const Material& material) const;
   void wear_plain(Scene& part, const JsonNode& object);
-  const Scene& mesh(const JsonNode& file);
+  const Scene& mesh(const JsonNode& file, bool keeps_texcoords);
   void append(const Scene& part, const JsonNode& object);
   void append_instances(Scene&& part, const JsonNode& object);
   Scene adopted(Scene&& part, const JsonNode& object);
@@ -72,9 +72,9 @@ class JsonObjects {
   JsonMaterials& unnamed_;
   std::filesystem::path folder_;
   MaterialTable materials_;
-  NameTable names_;                      // of materials
-  bool warned_of_pictures_ = false;      // on shapes
-  std::map<std::string, Scene> meshes_;  // a file named by several objects is read once
+  NameTable names_;                                       // of materials
+  bool warned_of_pictures_ = false;                       // on shapes
+  std::map<std::pair<std::string, bool>, Scene> meshes_;  // a file named by several objects is read once
   Unsettled unsettled_;
   std::uint32_t number_ = 0;  // of the next primitive
 };

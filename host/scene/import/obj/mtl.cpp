@@ -311,7 +311,9 @@ void share_energy(int illum, Material& m) {
 }  // namespace
 
 bool is_invisible(const MtlMaterial& mtl) {
-  return opacity(mtl) == 0 && !(has_refraction(mtl.illum.value_or(2)) && mtl.ni != 1);
+  const int illum = mtl.illum.value_or(2);
+  const bool shines = mtl.ke != vec3(0) || mtl.map_ke || (has_mirror(illum) && mtl.ks != vec3(0));
+  return opacity(mtl) == 0 && !shines && !(has_refraction(illum) && mtl.ni != 1);
 }
 
 Material whitted_from_mtl(const MtlMaterial& mtl, bool has_picture) {

@@ -74,7 +74,7 @@ bool all_are_invisible(const Library& library, const std::vector<std::string>& n
   bool any = false;
   for (const std::string& name : names) {
     const MtlMaterial* const mtl = library.find(name);
-    if (mtl && !is_invisible(*mtl)) return false;
+    if (mtl ? !is_invisible(*mtl) : name.empty()) return false;  // without a name it is the default one
     any = any || mtl;
   }
   return any;
