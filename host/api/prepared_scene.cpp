@@ -2,7 +2,6 @@
 
 #include "accel/cache/cache.h"
 #include "accel/prepare/prepared.h"
-#include "accel/prepare/studio.h"
 #include "accel/prepare/view.h"
 #include "base/cache_folder.h"
 #include "base/paged.h"

@@ -1,5 +1,5 @@
-// What    A prepared scene seen in another way: by another camera, before another background, or only for
-//         what it covers. Trees and primitives are shared with the scene that it was made of.
+// What    A prepared scene seen in another way: by another camera, before another background, in a studio, or
+//         only for what it covers. Trees and primitives are shared with the scene that it was made of.
 // Errors  kdray::Error, ErrorCode::usage, as scene/model/frame.h says.
 #pragma once
 
@@ -13,6 +13,10 @@ namespace kdray::prepare {
 // Returns the scene before another camera and background. `aspect`: the picture's width divided by its
 // height.
 Prepared seen(const Prepared& prepared, const scene::View& view, double aspect);
+
+// Returns the scene in a studio (studio.cpp), as seen() shows it from then on; where its file has a camera or
+// lights, `instead` of these, or else the scene itself.
+Prepared in_studio(const Prepared& prepared, bool instead = false);
 
 // Returns the scene with everything in it shining white, on black: a picture is then the share of each pixel
 // that is covered, when rays go no further than to what they hit first.

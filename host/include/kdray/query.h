@@ -3,7 +3,7 @@
 //         that isn't wanted is an empty view, and is not computed.
 // Units   The scene's; t counts in multiples of the direction as it was given.
 // Errors  kdray::Error: ErrorCode::input for sizes that don't match and, unless InvalidRays::miss says
-//         otherwise, for an invalid ray (NaN anywhere, an infinite origin or t_min, a direction that is
+//         otherwise, for an invalid ray (NaN anywhere, an infinite origin, t_min = inf, a direction that is
 //         infinite or 0), with its number; ErrorCode::cancelled.
 #pragma once
 

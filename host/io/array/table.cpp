@@ -1,11 +1,13 @@
 #include "io/array/table.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <iterator>
 
 #include "base/error.h"
-#include "io/array/csv.h"
 #include "io/array/npy_header.h"
 #include "io/array/zip.h"
 
@@ -84,6 +86,60 @@ void write_npy(std::span<const Column> columns, const Sink& sink) {
   write_rows(columns, sink);
 }
 
+// ---- As a text: a line of names, then one for each row, numbers as short as they can be to be read back as
+// they are. A column of several values to a row has a name for each: point_x, point_y, point_z.
+
+template <class T>
+T value_at(const std::byte* at) {
+  T value;
+  std::memcpy(&value, at, sizeof value);
+  return value;
+}
+
+void append_value(const Column& c, const std::byte* at, std::string& text) {
+  const auto out = std::back_inserter(text);
+  if (c.type == kTypeName<float>) {
+    fmt::format_to(out, "{}", value_at<float>(at));
+  } else if (c.type == kTypeName<double>) {
+    fmt::format_to(out, "{}", value_at<double>(at));
+  } else if (c.type == kTypeName<std::int32_t>) {
+    fmt::format_to(out, "{}", value_at<std::int32_t>(at));
+  } else if (c.type == kTypeName<std::uint32_t>) {
+    fmt::format_to(out, "{}", value_at<std::uint32_t>(at));
+  } else if (c.type == kTypeName<std::uint64_t>) {
+    fmt::format_to(out, "{}", value_at<std::uint64_t>(at));
+  } else {
+    text += *at == std::byte{0} ? '0' : '1';
+  }
+}
+
+void append_names(std::span<const Column> columns, std::string& text) {
+  for (const Column& c : columns)
+    for (std::size_t k = 0; k < c.n_values; ++k) {
+      text += text.empty() ? "" : ",";
+      text += c.n_values > 1 ? fmt::format("{}_{}", c.name, "xyz"[k]) : c.name;
+    }
+  text += '\n';
+}
+
+void write_csv(std::span<const Column> columns, const Sink& sink) {
+  check_lengths(columns);
+  std::string text;
+  append_names(columns, text);
+  for (std::size_t row = 0; row < columns.front().n_rows; ++row) {
+    for (const Column& c : columns)
+      for (std::size_t k = 0; k < c.n_values; ++k) {
+        append_value(c, c.first + row * c.stride + k * c.value_bytes, text);
+        text += ',';
+      }
+    text.back() = '\n';
+    if (text.size() < kPieceBytes) continue;
+    sink(text);
+    text.clear();
+  }
+  if (!text.empty()) sink(text);
+}
+
 }  // namespace
 
 Column flags(std::string name, std::span<const std::uint8_t> values) {
@@ -93,10 +149,7 @@ Column flags(std::string name, std::span<const std::uint8_t> values) {
 
 void write_table(std::span<const Column> columns, TableFormat format, const Sink& sink) {
   if (format == TableFormat::npy) return write_npy(columns, sink);
-  if (format == TableFormat::csv) {
-    check_lengths(columns);
-    return write_csv(columns, sink);
-  }
+  if (format == TableFormat::csv) return write_csv(columns, sink);
   ZipWriter zip(sink);
   for (const Column& c : columns) zip.add(c.name + ".npy", [&](const Sink& to) { write_npy({&c, 1}, to); });
   zip.finish();

@@ -92,7 +92,7 @@ struct Floor {
   float reflect = 0;
 };
 
-// How a scene is shown in a studio (studio.h), by what its shape tells (accel/prepare/studio.h).
+// How a scene is shown in a studio (studio.h), by what its shape tells (accel/prepare/studio.cpp).
 struct Studio {
   dvec3 up{0, 1, 0};
   bool perhaps_on_side = false;  // z may be up, but the shape doesn't tell for certain

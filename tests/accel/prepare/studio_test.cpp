@@ -1,4 +1,4 @@
-#include "accel/prepare/studio.h"
+#include "accel/prepare/view.h"
 
 #include <gtest/gtest.h>
 
