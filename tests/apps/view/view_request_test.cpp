@@ -43,6 +43,10 @@ TEST(Command, HasTheNumbersWithAllTheirBits) {
       "--at=0,0,0 --up=0,0,1 "
       "--camera 1 --ortho 2.5 --headlight 0.5 --size 64x48 --depth 1 --samples 1 --queues 2 --mode odprt "
       "--aov depth");
+  settings.studio_instead = true;  // as long as the page shows it
+  EXPECT_EQ(command_for(request, settings, "a.nff").find("--look studio"), std::string::npos);
+  request.look.reset();
+  EXPECT_NE(command_for(request, settings, "a.nff").find(" --look studio --from="), std::string::npos);
 }
 
 TEST(EyeRay, GoesThroughThePicturesEdges) {
