@@ -43,7 +43,8 @@ nanobind::ndarray<nanobind::numpy, T> owned(std::vector<T>&& values) {
 template <class T>
 nanobind::ndarray<nanobind::numpy, T> owned_rows(std::vector<std::array<T, 3>>&& rows) {
   auto* const kept = new std::vector<std::array<T, 3>>(std::move(rows));
-  nanobind::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<std::array<T, 3>>*>(p); });
+  nanobind::capsule owner(kept,
+                          [](void* p) noexcept { delete static_cast<std::vector<std::array<T, 3>>*>(p); });
   return nanobind::ndarray<nanobind::numpy, T>(kept->data(), {kept->size(), 3}, owner);
 }
 

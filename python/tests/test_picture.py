@@ -175,8 +175,8 @@ def test_a_turned_picture_has_no_channels_that_do_not_fit(lit):
     turned = [np.flipud(picture), picture[::-1], picture.transpose(1, 0, 2), np.rot90(picture), np.roll(picture, 1, 0)]
     turned += [picture[np.arange(7, -1, -1)], np.take(picture, [0] * 8, axis=0), picture[:4], picture[..., 0]]
     for other in turned:
-        for now in (other, other.copy(), other * 1.0, copy.copy(other), other.astype(np.float64)):
-            assert now.channels == {}
+        for made in (other, other.copy(), other * 1.0, copy.copy(other), other.astype(np.float64)):
+            assert made.channels == {}
     picture *= 2
     assert set(picture.channels) == {"depth"}
     picture.channels = {}
