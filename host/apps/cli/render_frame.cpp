@@ -85,13 +85,6 @@ void check_transparent(const RenderArgs& o, const scene::Scene& scene) {
                 "--background transparent is for scenes whose background is one colour; this one's is not");
 }
 
-// Checks the view before a tree is built for nothing.
-void check_view_of(const RenderArgs& o, const scene::Scene& asked) {
-  const bool of_file = !asks_for_studio(o.view) || o.view.view.camera;
-  if (o.view.any && of_file) check_view(asked, o.view.view);
-  check_transparent(o, asked);
-}
-
 // Returns what share of each pixel eye rays hit anything in, for the samples that `render` asks for.
 std::vector<float> coverage(const PreparedScene& scene, const DeviceOptions& device,
                             const RenderOptions& render) {
@@ -194,7 +187,8 @@ FrameMaker::FrameMaker(RenderArgs& o) {
   scene_.emplace(
       o.scene, o.tree, o.device, o.cache, o.quiet,
       [&](const scene::Scene& asked) {
-        check_view_of(o, asked);
+        check_view_of(o.view, asked);
+        check_transparent(o, asked);
         if (leads()) check_files(o, files_, asked);
         check_memory(o, scene::settings_of(asked));
       },

@@ -190,6 +190,11 @@ bool asks_for_studio(const ViewOptions& options) {
   return options.look == Look::studio;
 }
 
+void check_view_of(const ViewOptions& options, const scene::Scene& scene) {
+  const bool of_file = !asks_for_studio(options) || options.view.camera;
+  if (options.any && of_file) check_view(scene, options.view);
+}
+
 PreparedScene in_look(const PreparedScene& scene, const ViewOptions& options) {
   return options.look.value_or(Look::studio) == Look::studio ? scene.in_studio(asks_for_studio(options))
                                                              : scene;

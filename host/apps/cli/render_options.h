@@ -31,6 +31,9 @@ struct ViewOptions {
 // --look --from --at --up --fov --camera --ortho --aperture --focus --headlight --background
 void add_view_options(CLI::App& app, ViewOptions& options);
 
+// Checks the view before a tree is built for nothing. A studio that is asked for has a camera of its own.
+void check_view_of(const ViewOptions& options, const scene::Scene& scene);
+
 // Returns whether a studio is asked for, which stands in for a file's camera and lights as well.
 bool asks_for_studio(const ViewOptions& options);
 

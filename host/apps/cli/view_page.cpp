@@ -161,9 +161,7 @@ int show_page(ViewArgs& args) {
   view::Server server(options);  // before the scene is read: the port may be taken
   args.tree.binary_form = true;  // channels and cells are of it
   OpenedScene first(input_of(args.scenes.front(), args.load), args.tree, args.device, args.cache, args.quiet,
-                    [&args](const scene::Scene& asked) {
-                      if (args.view.any && !asks_for_studio(args.view)) check_view(asked, args.view.view);
-                    });
+                    [&args](const scene::Scene& asked) { check_view_of(args.view, asked); });
   first.keep();
   view::Settings settings{args.view.view,
                           args.render,

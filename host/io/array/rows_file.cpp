@@ -116,7 +116,7 @@ RowsFile::RowsFile(const fs::path& path, const RowsWanted& wanted)
   std::string start(static_cast<std::size_t>(std::min<std::uint64_t>(kPreambleBytes, size)), '\0');
   read_bytes(start.data(), start.size());
   if (size == 0) throw input_error(name_, 0, "is empty", std::string("put the ") + wanted.name + " into it");
-  looks_like_text(start) ? read_text(size, wanted) : read_header(size, wanted);
+  looks_like_text(start) ? read_text(size, wanted) : read_header(start, size, wanted);
 }
 
 void RowsFile::read_text(std::uint64_t size, const RowsWanted& wanted) {
@@ -140,10 +140,7 @@ void RowsFile::read_text(std::uint64_t size, const RowsWanted& wanted) {
   in_double_ = true;
 }
 
-void RowsFile::read_header(std::uint64_t size, const RowsWanted& wanted) {
-  seek(0);
-  std::string start(static_cast<std::size_t>(std::min<std::uint64_t>(kPreambleBytes, size)), '\0');
-  read_bytes(start.data(), start.size());
+void RowsFile::read_header(const std::string& start, std::uint64_t size, const RowsWanted& wanted) {
   const NpyPreamble preamble = parse_preamble(start, name_);
   data_begin_ = std::uint64_t{preamble.bytes} + preamble.header_bytes;
   if (data_begin_ > size) throw input_error(name_, 0, "is cut short in its header", "save it again");

@@ -46,7 +46,7 @@ class RowsFile {
   }
 
  private:
-  void read_header(std::uint64_t size, const RowsWanted& wanted);
+  void read_header(const std::string& start, std::uint64_t size, const RowsWanted& wanted);
   void read_text(std::uint64_t size, const RowsWanted& wanted);
   template <class T>
   void lengthen(T* rows) const;

@@ -483,6 +483,9 @@ TEST(RenderCommand, AStudioThatIsAskedForStandsInForTheFilesOwnView) {
   EXPECT_EQ(rendered(lit, {"--look", "studio", "--up", "z"}), rendered(bare, {"--up", "z"}))
       << "as it looks along z";
   EXPECT_NE(rendered(lit, {}), studio);
+  for (const char* const command : {"render", "view"})
+    EXPECT_TRUE(fails_with(kdray({command, lit, "--look=studio", "--camera=9"}), 2, "no camera 9"))
+        << command;
   EXPECT_EQ(rendered(bare, {"--size", "9", "--size", "24"}), studio) << "the last one counts";
 }
 
