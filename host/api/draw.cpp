@@ -127,8 +127,8 @@ dvec3 vector_of(const float (&v)[3]) {
 // The kernels' eye ray through a pixel's centre (raygen/primary.clh), in double.
 dvec3 point_at(const layout::Frame& frame, std::uint32_t column, std::uint32_t row, double distance) {
   const double middle = frame.corner_grid ? 0 : 0.5;
-  const double x = (column + middle) * frame.x_scale + frame.x_offset;
-  const double y = (row + middle) * frame.y_scale + frame.y_offset;
+  const double x = (frame.crop_x + column + middle) * frame.x_scale + frame.x_offset;
+  const double y = (frame.crop_y + row + middle) * frame.y_scale + frame.y_offset;
   const dvec3 eye = vector_of(frame.eye), forward = vector_of(frame.forward);
   const dvec3 aside = vector_of(frame.right) * x + vector_of(frame.up) * y;
   if (frame.parallel) return eye + aside + safe_normalize(forward) * distance;

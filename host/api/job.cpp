@@ -93,9 +93,11 @@ std::string settings_in_full(const Job& job) {
   add(f.eye), add(f.forward), add(f.right), add(f.up), add(f.background);
   add(std::array{f.hither, f.x_scale, f.x_offset, f.y_scale, f.y_offset, f.spawn_threshold});
   add(std::array{f.lens_radius, f.lens_slope});
-  return text + fmt::format("{} {} {} {} {} {} {} {:a} {}", f.width, f.height, f.n_samples, f.max_depth,
-                            f.corner_grid, f.keep_weightless, f.parallel, job.options.adaptive_target,
-                            name_of(job.options.precision));
+  text +=
+      fmt::format("{} {} {} {} {} {} {} {:a} {}", f.width, f.height, f.n_samples, f.max_depth, f.corner_grid,
+                  f.keep_weightless, f.parallel, job.options.adaptive_target, name_of(job.options.precision));
+  if (job.options.crop) text += fmt::format(" {} {} {}", f.crop_x, f.crop_y, f.whole_width);
+  return text;
 }
 
 std::string settings_in_words(const Job& job) {
@@ -103,8 +105,10 @@ std::string settings_in_words(const Job& job) {
   const double target = job.options.adaptive_target;
   const std::string samples =
       target > 0 ? fmt::format("adaptive:{:.4g}", target) : std::to_string(f.n_samples);
-  return fmt::format("--size {}x{} --samples {} --depth {} --min-weight {:.4g}{}{}", f.width, f.height,
-                     samples, f.max_depth, job.options.min_weight,
+  const auto& crop = job.options.crop;
+  return fmt::format("--size {}x{}{} --samples {} --depth {} --min-weight {:.4g}{}{}", job.options.width,
+                     job.options.height, crop ? " --crop " + flatten::in_words(*crop) : "", samples,
+                     f.max_depth, job.options.min_weight,
                      job.options.precision == Precision::float64 ? " --precision double" : "",
                      f.corner_grid != 0 ? " --grid corners" : "");
 }
@@ -134,7 +138,9 @@ std::string makers(const State& state) {
 checkpoint::Cut cut_of(const Job& job) {
   const layout::Frame& f = job.frame;
   constexpr std::uint32_t kUnits = 4;
-  const std::uint32_t largest = f.n_samples >= 16 ? 8 : f.n_samples >= 4 ? 16 : pdprt::kLargestTile;
+  // A tile of thousands of samples would take longer than an interval.
+  std::uint32_t largest = f.n_samples >= 16 ? 8 : f.n_samples >= 4 ? 16 : pdprt::kLargestTile;
+  if (f.n_samples >= 1024) largest = f.n_samples >= 4096 ? 2 : 4;
   const std::uint32_t side = pdprt::choose_tile_side(f.width, f.height, kUnits, {}, largest);
   const RenderOptions& o = job.options;
   return {f.width, f.height, o.tile_width > 0 ? static_cast<std::uint32_t>(o.tile_width) : side,

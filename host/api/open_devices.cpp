@@ -79,7 +79,7 @@ void check(const DeviceOptions& o) {
 device::Builds builds_of(const DeviceOptions& options) {
   return {.cache = cache_in(options.programs),
           .watch = options.building,
-          .remember = options.remember_programs,
+          .remember = options.remember_programs.value_or(false),
           .exact = options.exact_programs};
 }
 

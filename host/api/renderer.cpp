@@ -22,9 +22,18 @@ namespace kdray {
 
 namespace {
 
-Picture to_picture(api::FrameResult& result, std::vector<image::Channel> channels) {
-  Picture picture{
-      static_cast<int>(result.width), static_cast<int>(result.height), std::move(result.rgb), {}, {}};
+Picture to_picture(const RenderOptions& resolved, api::FrameResult& result,
+                   std::vector<image::Channel> channels) {
+  const PixelRect part = resolved.crop.value_or(PixelRect{});
+  Picture picture{.width = static_cast<int>(result.width),
+                  .height = static_cast<int>(result.height),
+                  .rgb = std::move(result.rgb),
+                  .channels = {},
+                  .warnings = std::move(result.warnings),
+                  .x = part.x,
+                  .y = part.y,
+                  .whole_width = resolved.width,
+                  .whole_height = resolved.height};
   for (image::Channel& c : channels) picture.channels.push_back({std::move(c.name), std::move(c.values)});
   return picture;
 }
@@ -93,9 +102,8 @@ Picture Renderer::Impl::render(const RenderOptions& options) {
   if (job.checkpoint)
     std::ranges::copy(job.checkpoint->warnings(), std::back_inserter(frame_result.warnings));
   if (!leads) return {};
-  Picture picture = to_picture(frame_result, api::channels_of(state, job, frame_result));
-  picture.warnings = std::move(frame_result.warnings);
-  return picture;
+  std::vector<image::Channel> channels = api::channels_of(state, job, frame_result);
+  return to_picture(job.options, frame_result, std::move(channels));
 }
 
 std::vector<Hit> Renderer::Impl::trace(std::span<const Ray> rays, bool any_hit, int repeat, Traversal wanted,

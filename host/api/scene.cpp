@@ -138,12 +138,9 @@ GeometryId Scene::add_spheres(const Spheres& s, const GeometryOptions& options) 
   return add_shapes({"spheres", {{"centers", s.centers}, {"radii", s.radii}}}, options);
 }
 GeometryId Scene::add_cones(const Cones& c, const GeometryOptions& options) {
-  return add_shapes({"cones",
-                     {{"bases", c.bases},
-                      {"base_radii", c.base_radii},
-                      {"apexes", c.apexes},
-                      {"apex_radii", c.apex_radii}}},
-                    options);
+  Shapes cones{"cones", {{"bases", c.bases}, {"base_radii", c.base_radii}, {"apexes", c.apexes}}};
+  if (!c.apex_radii.empty()) cones.fields.push_back({"apex_radii", c.apex_radii});
+  return add_shapes(cones, options);
 }
 GeometryId Scene::add_discs(const Discs& d, const GeometryOptions& options) {
   return add_shapes({"discs", {{"centers", d.centers}, {"normals", d.normals}, {"radii", d.radii}}}, options);

@@ -1,6 +1,7 @@
 #include "api/scene_impl.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "accel/prepare/instanced.h"
@@ -124,7 +125,7 @@ std::optional<PreparedScene> Scene::Impl::refit(const CommitOptions& options, Co
   const bool has_instances = !last.flat.instances.empty();
   // The binary form has planes, which don't move (nor is there one of instances); and a limit on memory asks
   // for trees of several kinds.
-  if (!(last.tree_options == options.tree) || (options.tree.binary_form && !has_instances) ||
+  if (!(last.tree_options == options.tree) || (*options.tree.binary_form && !has_instances) ||
       options.tree.memory_bytes > 0)
     return std::nullopt;
   if (!changes.any && growth <= options.refit_growth) {
@@ -166,7 +167,10 @@ void Scene::Impl::settle(const CommitReport& report) {
   if (!report.refitted) fitting.reset();
 }
 
-CommitReport Scene::Impl::commit(const CommitOptions& options) {
+CommitReport Scene::Impl::commit(CommitOptions options) {
+  if (!options.tree.binary_form) options.tree.binary_form = false;
+  if (!options.device.remember_programs) options.device.remember_programs = true;
+  if (std::isnan(options.refit_growth)) throw Error(ErrorCode::usage, "refit_growth is not a number");
   api::open_device(options.device, {});  // without a device there is no use in building a tree
   CommitReport report;
   std::optional<PreparedScene> ready = refit(options, report);

@@ -65,7 +65,7 @@ struct Scene::Impl {
   void note_other_geometries();
 
   const scene::Scene& model();
-  CommitReport commit(const CommitOptions& options);
+  CommitReport commit(CommitOptions options);
   std::shared_ptr<api::Committed> last();   // that was committed
   std::shared_ptr<api::Committed> asked();  // of the device, too
 

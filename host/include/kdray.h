@@ -123,6 +123,7 @@ KDRAY_API kdray_status kdray_add_mesh(kdray_scene* scene, kdray_in vertices, kdr
 /* Radii: one for each, or one for all. */
 KDRAY_API kdray_status kdray_add_spheres(kdray_scene* scene, kdray_in centers, kdray_in radii,
                                          const kdray_geometry_options* options, uint32_t* id);
+/* apex_radii: count = 0: pointed. */
 KDRAY_API kdray_status kdray_add_cones(kdray_scene* scene, kdray_in bases, kdray_in base_radii,
                                        kdray_in apexes, kdray_in apex_radii,
                                        const kdray_geometry_options* options, uint32_t* id);
@@ -132,8 +133,9 @@ KDRAY_API kdray_status kdray_add_discs(kdray_scene* scene, kdray_in centers, kdr
 KDRAY_API kdray_status kdray_add_tori(kdray_scene* scene, kdray_in centers, kdray_in axes,
                                       kdray_in major_radii, kdray_in minor_radii,
                                       const kdray_geometry_options* options, uint32_t* id);
-/* Shapes of any kind by its plural ("spheres", "cones", "discs", "tori"), an array for each of the fields
- * that these functions name: what they do is this. */
+/* Shapes of any kind by its plural, an array for each of its fields, which the functions above name:
+ * "spheres", "cones", "discs", "tori"; and "capsules", cylinders with round ends, by "starts", "ends" and
+ * "radii". */
 typedef struct kdray_field {
   const char* name; /* "centers" */
   kdray_in rows;
@@ -165,7 +167,7 @@ KDRAY_API kdray_status kdray_enable(kdray_scene* scene, uint32_t geometry, int e
  * as `size` bytes hold, ending with a 0. (`instance`: KDRAY_NO_INSTANCE where it lies in none.) */
 KDRAY_API kdray_status kdray_name_of(const kdray_scene* scene, uint32_t geometry, uint32_t primitive,
                                      uint32_t instance, char* name, size_t size);
-/* Here 0 means no bit: no ray meets it. Masks are for rays; points see every geometry. */
+/* Here 0 means no bit: no ray meets it. Masks are for rays; points and pictures see every geometry. */
 KDRAY_API kdray_status kdray_set_mask(kdray_scene* scene, uint32_t geometry, uint32_t mask);
 
 /* The Whitted terms, each with its colour (red, green, blue) multiplied in. */

@@ -15,9 +15,9 @@
 
 KDRAY_LAYOUT_BEGIN
 typedef struct Frame {
-  // A sample at (sx, sy), in pixels from the top left, looks from eye along forward + x*right + y*up with
-  // x = sx*x_scale + x_offset and y = sy*y_scale + y_offset; of a parallel camera, from eye + x*right + y*up
-  // along forward.
+  // A sample at (sx, sy), in pixels from the whole picture's top left, looks from eye along
+  // forward + x*right + y*up with x = sx*x_scale + x_offset and y = sy*y_scale + y_offset; of a parallel
+  // camera, from eye + x*right + y*up along forward.
   float eye[3];
   float hither;
   float forward[3];
@@ -71,8 +71,10 @@ typedef struct Frame {
   float floor_unshadowed[3];
   float floor_reflect;
   float floor_diffuse[3];
+  // The frame may be a part of a picture, so many pixels across, that begins at (crop_x, crop_y) of it.
+  u32 crop_x, crop_y, whole_width;
 } Frame;
-KDRAY_ASSERT_SIZE(Frame, 324)
+KDRAY_ASSERT_SIZE(Frame, 336)
 KDRAY_ASSERT_OFFSET(Frame, core_lo, 192)
 KDRAY_ASSERT_OFFSET(Frame, width, 112)
 

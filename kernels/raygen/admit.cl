@@ -28,8 +28,8 @@ static inline bool admit_sample(__constant const Frame* frame, __global const u3
   const bool in = x < tile.z && y < tile.w;
   x += tile.x, y += tile.y;
   const u32 pixel = y * frame->width + x;
-  write_eye_rays(frame, x, y, sample_offset(pixel, k, frame->n_samples), k, 1.0f, in ? pixel : KDRAY_NO_PIXEL,
-                 true, batch, i);
+  write_eye_rays(frame, x, y, sample_offset(pixel_of_whole(frame, x, y), k, frame->n_samples), k, 1.0f,
+                 in ? pixel : KDRAY_NO_PIXEL, true, batch, i);
   return in;
 }
 

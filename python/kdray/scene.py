@@ -776,6 +776,7 @@ class Scene:
         samples: int | None = None,
         depth: int = 5,
         *,
+        crop: tuple[int, int, int, int] | None = None,
         look: str = "studio",
         adaptive: bool | float = False,
         channels: Iterable[str] = (),
@@ -786,6 +787,8 @@ class Scene:
     ) -> Picture:
         """A Whitted picture, `size` = (width, height), by `camera` or one that sees all of the scene.
 
+        `crop` = (x, y, width, height): this part of the picture alone, from its top left, with the pixels that the
+        whole one has there.
         `look`: where the scene has neither a camera nor lights of its own, "studio" shows it in soft light that
         follows the camera, on a floor before a backdrop; "plain" by two lights before the background.
         `samples` per pixel (1, or 8 in a studio), or `adaptive`: as many as each pixel needs (a float: the error in
@@ -819,6 +822,7 @@ class Scene:
             named,
             teller(progress, "render"),
             look,
+            crop,
         )
         return Picture(rgb.reshape(h, w, 3), _planes(planes, h, w), list(warnings))
 

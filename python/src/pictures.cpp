@@ -117,12 +117,13 @@ void add_pictures(nb::module_& module, SceneClass scene) {
       [](const Scene& s, const std::optional<CameraNumbers>& camera, int width, int height, int samples,
          int depth, double min_weight, double adaptive, const std::string& mode, const std::string& precision,
          const std::vector<std::string>& channels, const std::optional<Progress>& progress,
-         const std::string& look) {
+         const std::string& look, const std::optional<std::array<int, 4>>& crop) {
         Picture picture;
         {
           RenderOptions o = options_of(width, height, samples, depth, min_weight, adaptive, mode, precision);
           if (camera) o.camera = camera_of(*camera);
           o.channels = channels;
+          if (crop) o.crop = PixelRect{(*crop)[0], (*crop)[1], (*crop)[2], (*crop)[3]};
           const Look shown = look_of(look);
           if (samples == 0 && !(shown == Look::studio && can_be_in_studio(s))) o.samples = 1;
           const WithoutGil released;
@@ -132,7 +133,7 @@ void add_pictures(nb::module_& module, SceneClass scene) {
         return arrays_of(std::move(picture));
       },
       "camera"_a.none(), "width"_a, "height"_a, "samples"_a, "depth"_a, "min_weight"_a, "adaptive"_a,
-      "mode"_a, "precision"_a, "channels"_a, "progress"_a.none(), "look"_a);
+      "mode"_a, "precision"_a, "channels"_a, "progress"_a.none(), "look"_a, "crop"_a.none());
   module.def(
       "write_picture",
       [](const std::string& file, const Pixels& pixels,

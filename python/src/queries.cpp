@@ -100,7 +100,8 @@ void add_point_queries(SceneClass& scene) {
         return s.closest_points(points_of(points), out, options).invalid;
       },
       Released(), "points"_a, "radius"_a, "strict"_a, "distance"_a.none(), "point"_a.none(),
-      "geometry"_a.none(), "primitive"_a.none(), "u"_a.none(), "v"_a.none(), "instance"_a.none() = nb::none());
+      "geometry"_a.none(), "primitive"_a.none(), "u"_a.none(), "v"_a.none(),
+      "instance"_a.none() = nb::none());
   scene.def(
       "inside",
       [](const Scene& s, const In& points, bool strict, const Out& out) {

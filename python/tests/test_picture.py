@@ -135,6 +135,17 @@ def test_progress_is_told_and_may_end_it(lit):
         lit.render(size=(256, 256), progress=stop)
 
 
+def test_a_part_has_the_pixels_of_the_whole(lit):
+    camera = kdray.Camera((0, 1, 5), fov=30)
+    whole = lit.render(camera, (60, 40), samples=4, channels=["depth"])
+    part = lit.render(camera, (60, 40), samples=4, channels=["depth"], crop=(21, 9, 30, 20))
+    np.testing.assert_array_equal(part, whole[9:29, 21:51])
+    np.testing.assert_array_equal(part.channels["depth"], whole.channels["depth"][9:29, 21:51])
+    for wrong in [(0, 0, 61, 1), (-1, 0, 2, 2), (0, 0, 0, 1)]:
+        with pytest.raises(kdray.errors.UsageError, match="does not lie within the picture of 60x40"):
+            lit.render(camera, (60, 40), crop=wrong)
+
+
 def test_wrong_options(lit):
     with pytest.raises(kdray.UsageError, match="mode is one of"):
         lit.render(size=(8, 8), mode="fast")

@@ -342,6 +342,19 @@ TEST_P(Query, CrossingsKnowMasksAndRaysThatMeanNothing) {
   EXPECT_EQ(nearest.splits, (std::vector<std::uint64_t>{0, 0, 1, 2, 3}));
   EXPECT_EQ(nearest.more, (std::vector<std::uint8_t>{0, 1, 1, 1}));
 
+  // Rays of doubles that begin near a surface are the host's, which knows masks of no bit as well.
+  scene.set_mask(0, 0);
+  scene.commit(options());
+  counts.resize(3);
+  const std::vector<double> near = {0.25, 0.1, 1, 0.25, 0.1, 1.000001, 0.25, 0.1, -1.000001};
+  const std::vector<double> below = {0, 0, -1};
+  std::vector<double> t(3);
+  scene.count({near, below}, counts);
+  EXPECT_EQ(counts, (std::vector<std::uint32_t>{0, 0, 0}));
+  EXPECT_TRUE(scene.all({near, below}).t.empty());
+  scene.closest({near, std::vector<double>{0, 0, 1}}, {.t = t});
+  EXPECT_EQ(t, (std::vector<double>{2, 2 - 1e-6, 4 + 1e-6})) << "the cube that is seen";
+
   const std::vector<float> nowhere = {0, 0, 0};
   AllHitsOptions counted;
   counted.invalid = InvalidRays::miss;

@@ -323,6 +323,9 @@ TEST_P(Refit, BuildsWhatHasChangedOtherwise) {
   CommitOptions other = always();
   other.tree.quality = BuildQuality::best;
   EXPECT_FALSE(scene.commit(other).refitted);
+  CommitOptions braced = other;
+  braced.tree = {.quality = BuildQuality::best, .geometry = other.tree.geometry};
+  EXPECT_TRUE(scene.commit(braced).refitted) << "no binary form is asked for";
   other.tree.binary_form = true;
   scene.commit(other);
   EXPECT_FALSE(scene.commit(other).refitted) << "planes don't move";
@@ -433,7 +436,8 @@ TEST_P(Refit, RefusesWhatIsNoVertexAndGoesOn) {
   bad[4] = std::numeric_limits<float>::quiet_NaN();
   EXPECT_TRUE(fails([&] { scene.update_vertices(id, bad); }, "vertices[1]: not finite"));
   EXPECT_TRUE(scene.commit(always()).refitted);
-  EXPECT_FALSE(scene.commit(options(std::numeric_limits<double>::quiet_NaN())).refitted);
+  EXPECT_TRUE(
+      fails([&] { scene.commit(options(std::nan(""))); }, "refit_growth is not a number", ErrorCode::usage));
 }
 
 TEST_P(Refit, NormalsTurnWithTheVertices) {

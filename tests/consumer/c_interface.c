@@ -27,19 +27,33 @@ static kdray_in doubles(const double* data, size_t count) {
 static void check_what_is_wrong(kdray_scene* scene) {
   kdray_in none = {0}, vertices = floats(corners, 8), triangles = {faces, 12, 0, KDRAY_UINT32};
   kdray_geometry_options unsized = {0};
+  kdray_rays rays = {0};
+  uint32_t counts[2];
+  kdray_out overlapping = {counts, 2, 0, KDRAY_UINT32};
   kdray_load_options unsized_load = {0}, wrong_load = {0};
   uint32_t beyond[3] = {0, 1, 8};
   kdray_in bad = {beyond, 1, 0, KDRAY_UINT32}, of_floats = {faces, 12, 0, KDRAY_FLOAT32},
            null = {NULL, 8, 0, KDRAY_FLOAT32};
+  expect(kdray_scene_new(NULL) == KDRAY_USAGE, "nowhere to put a scene");
   expect(kdray_add_mesh(NULL, vertices, triangles, none, NULL, NULL) == KDRAY_USAGE, "no scene");
-  expect(kdray_add_mesh(scene, null, triangles, none, NULL, NULL) == KDRAY_USAGE, "no data");
+  expect(kdray_add_mesh(scene, null, triangles, none, NULL, NULL) == KDRAY_INPUT, "no data");
   expect(strstr(kdray_last_error(), "vertices") != NULL, "the array is named");
-  expect(kdray_add_mesh(scene, vertices, of_floats, none, NULL, NULL) == KDRAY_USAGE,
+  expect(kdray_add_mesh(scene, vertices, of_floats, none, NULL, NULL) == KDRAY_INPUT,
          "indices that are floats");
+  expect(strstr(kdray_last_error(), "triangles: its type is 1; it is to be uint32 or int32 or") != NULL,
+         "the types that it may have are named");
+  overlapping.stride = 2;
+  rays.size = sizeof rays, rays.origins = floats(corners, 2), rays.directions = floats(corners + 3, 2);
+  expect(kdray_count(scene, &rays, overlapping, NULL) != KDRAY_OK &&
+             strstr(kdray_last_error(), "counts: ") != NULL,
+         "an array is named whose rows overlap");
   expect(kdray_add_mesh(scene, vertices, bad, none, NULL, NULL) == KDRAY_INPUT, "an index beyond all");
   expect(strstr(kdray_last_error(), "triangles[0]") != NULL, "the element is named");
   expect(kdray_add_mesh(scene, vertices, triangles, none, &unsized, NULL) == KDRAY_USAGE,
          "a struct without its size");
+  unsized.size = (size_t)-1;
+  expect(kdray_add_mesh(scene, vertices, triangles, none, &unsized, NULL) == KDRAY_USAGE,
+         "a size that is none");
   expect(kdray_remove(scene, 7) == KDRAY_USAGE, "a geometry that isn't there");
   expect(kdray_scene_load("no/such/file.obj", NULL, &scene) == KDRAY_INPUT, "a file that isn't there");
   expect(kdray_scene_load("no/such/file.obj", &unsized_load, &scene) == KDRAY_USAGE,
@@ -318,7 +332,8 @@ static void check_tori(void) {
   const kdray_field disc[3] = {{"normals", about}, {"radii", doubles(&minor, 1)}, {"centers", one}};
   expect(kdray_scene_new(&scene) == KDRAY_OK, "a scene");
   expect(kdray_add_shapes(scene, "cubes", disc, 3, NULL, NULL) == KDRAY_USAGE, "no kind of that name");
-  expect(strstr(kdray_last_error(), "spheres, cones, discs, tori") != NULL, "what there is is named");
+  expect(strstr(kdray_last_error(), "spheres, cones, discs, tori, capsules") != NULL,
+         "what there is is named");
   expect(kdray_add_shapes(scene, "spheres", disc, 3, NULL, NULL) == KDRAY_USAGE, "spheres have no normals");
   expect(kdray_add_shapes(scene, "discs", disc, 2, NULL, NULL) == KDRAY_INPUT, "no centers");
   expect(kdray_add_shapes(scene, "discs", NULL, 2, NULL, NULL) == KDRAY_USAGE, "no fields");
@@ -334,6 +349,9 @@ static void check_tori(void) {
   expect(kdray_add_shapes(scene, "discs", disc, 3, NULL, &ring) == KDRAY_OK && ring == 1,
          "a disc in its hole");
   expect(kdray_remove(scene, ring) == KDRAY_OK, "the disc is removed");
+  expect(kdray_add_cones(scene, one, doubles(&minor, 1), about, none, NULL, &ring) == KDRAY_OK,
+         "a cone without a radius at its apex");
+  expect(kdray_remove(scene, ring) == KDRAY_OK, "the cone is removed");
   expect(kdray_commit(scene, NULL) == KDRAY_OK, "commit");
   rays.size = sizeof rays, rays.origins = doubles(origins, 2), rays.directions = doubles(directions, 2);
   hits.size = sizeof hits, hits.t.data = t, hits.t.count = 2, hits.t.type = KDRAY_FLOAT64;

@@ -111,6 +111,37 @@ TEST_P(Modes, OdprtWithQueuesThatFail) {
   }
 }
 
+// What `part` of the whole's values is, of so many to a pixel.
+std::vector<float> part_of(const std::vector<float>& whole, int values, const PixelRect& part) {
+  std::vector<float> cut;
+  for (int y = part.y; y < part.y + part.height; ++y) {
+    const auto first = whole.begin() + std::ptrdiff_t{values} * (y * kWidth + part.x);
+    cut.insert(cut.end(), first, first + std::ptrdiff_t{values} * part.width);
+  }
+  return cut;
+}
+
+TEST_P(Modes, APartHasTheWholePicturesPixels) {
+  Way whole{"pdprt", 1};
+  whole.options.samples = 3;
+  whole.options.channels = {"depth", "normal", "primitive"};
+  const Picture expected = render(scene, whole).picture;
+  for (const PixelRect part : {PixelRect{37, 22, 70, 41}, PixelRect{149, 0, 1, 101}, PixelRect{0, 90, 3, 1}})
+    for (Way way : {whole, per_ray(whole), odprt(2, Balance::pilot), per_ray(odprt(3, Balance::sah))}) {
+      SCOPED_TRACE(way.name);
+      way.options.samples = whole.options.samples;
+      way.options.channels = whole.options.channels;
+      way.options.crop = part;
+      const Picture got = render(scene, way).picture;
+      ASSERT_EQ(std::pair(got.width, got.height), std::pair(part.width, part.height));
+      EXPECT_EQ(std::pair(got.x, got.y), std::pair(part.x, part.y));
+      EXPECT_EQ(std::pair(got.whole_width, got.whole_height), std::pair(kWidth, kHeight));
+      EXPECT_TRUE(same_bits(got.rgb, part_of(expected.rgb, 3, part)));
+      for (const char* const name : {"depth", "normal.x", "normal.z", "primitive"})
+        EXPECT_TRUE(same_bits(channel(got, name), part_of(channel(expected, name), 1, part))) << name;
+    }
+}
+
 TEST_P(Modes, OdprtThatFailsEverywhereSaysSo) {
   Way way = odprt(2, Balance::sah);
   way.faults = "0@1,1@1";

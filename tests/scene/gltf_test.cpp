@@ -473,6 +473,12 @@ TEST(Gltf, ReadsAndExposesLights) {
   EXPECT_NEAR(sum, 1, 1e-5);
   EXPECT_NEAR(s.lights[0].color.x / s.lights[1].color.x, 50000.0 / 800, 1e-3);
   EXPECT_NEAR(s.lights[0].color.y / s.lights[0].color.x, 0.5, 1e-6);
+  // A film's frames have one exposure, whatever moves in them.
+  EXPECT_NEAR(s.framing.illuminance, 50000 + 801.0 / 100, 0.1);
+  LoadOptions of_film;
+  of_film.framed = Framed{{{-9, -9, -9}, {9, 9, 90}}, 2 * s.framing.illuminance};
+  const Scene darker = read_gltf(sample.text(), "a.gltf", of_film);
+  EXPECT_EQ(darker.lights[0].color, s.lights[0].color / 2.0f);
   sample.json["nodes"][1]["extensions"]["KHR_lights_punctual"]["light"] = 3;
   EXPECT_SAYS(refused(sample), "/nodes/1/extensions/KHR_lights_punctual/light: there is no such light");
 }

@@ -1,5 +1,8 @@
+#include <fmt/format.h>
+
 #include <cmath>
 
+#include "base/local_space.h"
 #include "scene/import/load.h"
 #include "scene/scratch.h"
 
@@ -129,13 +132,17 @@ TEST(Json, IncludesMeshesAndPlacesThem) {
 }
 
 TEST(Json, MirrorsKeepFrontsAndSkewsKeepNormalsUpright) {
-  const Scene s = read(R"({"objects": [
-      {"type": "triangles", "vertices": [[0, 0, 0], [1, 0, 1], [0, 1, 0]], "faces": [[0, 1, 2]],
-       "normals": [[-1, 0, 1], [-1, 0, 1], [-1, 0, 1]], "scale": [-3, 1, 1]}]})");
-  const Triangle& t = s.triangles[0];
-  const dvec3 a = s.vertices[t.vertex[0]], b = s.vertices[t.vertex[1]], c = s.vertices[t.vertex[2]];
-  const dvec3 face = glm::normalize(glm::cross(b - a, c - a));
-  for (const auto n : t.normal) EXPECT_GT(glm::dot(face, dvec3(s.normals[n])), 1 - 1e-6);
+  for (const char* const scale : {"[-3, 1, 1]", "[-3e-200, 1e-200, 1e-200]", "[-3e200, 1e200, 1e200]"}) {
+    SCOPED_TRACE(scale);
+    const Scene s = read(fmt::format(R"({{"objects": [
+        {{"type": "triangles", "vertices": [[0, 0, 0], [1, 0, 1], [0, 1, 0]], "faces": [[0, 1, 2]],
+         "normals": [[-1, 0, 1], [-1, 0, 1], [-1, 0, 1]], "scale": {}}}]}})",
+                                     scale));
+    const Triangle& t = s.triangles[0];
+    const dvec3 a = s.vertices[t.vertex[0]], b = s.vertices[t.vertex[1]], c = s.vertices[t.vertex[2]];
+    const dvec3 face = glm::normalize(glm::cross(safe_normalize(b - a), safe_normalize(c - a)));
+    for (const auto n : t.normal) EXPECT_GT(glm::dot(face, dvec3(s.normals[n])), 1 - 1e-6);
+  }
 }
 
 TEST(Json, CutsConcaveFaces) {

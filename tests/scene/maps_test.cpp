@@ -269,10 +269,10 @@ TEST(Maps, OfAProgramAreRefused) {
   refuses([&] { picture_of(Pixels{nullptr, 1, 1, 1}); }, "no data");
   refuses([&] { picture_of(Pixels{&byte, 1, 2, 1, static_cast<std::size_t>(-1)}); }, "beyond any memory");
   Texturing texturing;
-  refuses([&] { textured_material({.picture = 3}, texturing); }, "there is no picture 3");
+  refuses([&] { textured_material({.picture = 3}, texturing); }, "picture: there is no such picture");
   refuses([&] { textured_material({.alpha = AlphaMode::mask}, texturing); }, "no picture whose alpha");
   refuses([&] { textured_material({.metal_picture = 3}, texturing); },
-          "metal_picture: there is no picture 3");
+          "metal_picture: there is no such picture");
   refuses([&] { textured_material({.metallic = 1.5f}, texturing); }, "metallic may be 0 to 1");
   refuses([&] { textured_material({.roughness = NAN}, texturing); }, "roughness may be 0 to 1");
   refuses([&] { textured_material({.occlusion = -1}, texturing); }, "occlusion may be 0 to 1");

@@ -66,7 +66,8 @@ void get(const Json& from, std::vector<scene::Camera>& cameras) {
 }
 
 Json of(const scene::Framing& framing) {
-  const auto& [camera, lights, box, studio, floor] = framing;
+  const auto& [camera, lights, box, studio, floor, illuminance] = framing;
+  static_cast<void>(illuminance);                       // the lights' colours have it
   static_cast<void>(studio), static_cast<void>(floor);  // of scenes as they are seen, which are kept nowhere
   return {camera, lights, box.empty() ? Json() : Json{of(box.lo), of(box.hi)}};  // infinities are no numbers
 }

@@ -10,6 +10,10 @@
 
 namespace kdray::flatten {
 
+std::string in_words(const PixelRect& part) {
+  return fmt::format("{}x{}+{}+{}", part.width, part.height, part.x, part.y);
+}
+
 namespace {
 
 constexpr int kDefaultDepth = 5, kMaxDepth = 64, kMaxSamples = 65536, kMaxSide = 65536;
@@ -21,6 +25,25 @@ int pick(int option, const std::optional<int>& setting, int fallback) {
 void check_range(const char* what, int value, int lo, int hi) {
   if (value < lo || value > hi)
     throw Error(ErrorCode::usage, fmt::format("{} is {}; it may be {} to {}", what, value, lo, hi));
+}
+
+// 0 stands for a default, and no other number does but a min_weight below 0.
+void check_numbers(const RenderOptions& o) {
+  check_range("the picture's width", o.width, 0, kMaxSide);
+  check_range("the picture's height", o.height, 0, kMaxSide);
+  check_range("depth", o.depth, 0, kMaxDepth);
+  check_range("samples", o.samples, 0, kMaxSamples);
+  if (!(o.adaptive_target >= 0)) throw Error(ErrorCode::usage, "adaptive_target is 0 or above");
+  if (std::isnan(o.min_weight)) throw Error(ErrorCode::usage, "min_weight is not a number");
+}
+
+void check_crop(const PixelRect& crop, int width, int height) {
+  const auto fits = [](int first, int n, int all) {
+    return first >= 0 && n >= 1 && first < all && n <= all - first;
+  };
+  if (!fits(crop.x, crop.width, width) || !fits(crop.y, crop.height, height))
+    throw Error(ErrorCode::usage, fmt::format("the part {} does not lie within the picture of {}x{}",
+                                              in_words(crop), width, height));
 }
 
 double largest(const vec3& v) {
@@ -70,6 +93,7 @@ void set_floor(layout::Frame& f, const scene::Floor& floor, const LocalSpace& sp
 }  // namespace
 
 RenderOptions resolved(const RenderOptions& options, const scene::RenderSettings& settings) {
+  check_numbers(options);
   RenderOptions o = options;
   scene::RenderSettings sized = settings;
   scene::set_size(sized, o.width, o.height);
@@ -86,6 +110,7 @@ RenderOptions resolved(const RenderOptions& options, const scene::RenderSettings
   check_range("the tile's height", o.tile_height, 0, kMaxSide);
   if (static_cast<double>(o.width) * o.height > 0x7fffffff)
     throw Error(ErrorCode::usage, fmt::format("a picture of {}x{} has over 2^31 pixels", o.width, o.height));
+  if (o.crop) check_crop(*o.crop, o.width, o.height);
   return o;
 }
 
@@ -153,8 +178,12 @@ layout::Frame make_frame(const scene::Scene& scene, const scene::Geometry& geome
   f.spawn_threshold =
       bound > 0 ? static_cast<float>(o.min_weight / (std::isfinite(bound) ? bound : 1.0)) : 0.0f;
   f.keep_weightless = o.min_weight == 0 ? 1 : 0;
-  f.width = static_cast<layout::u32>(o.width);
-  f.height = static_cast<layout::u32>(o.height);
+  const PixelRect part = o.crop.value_or(PixelRect{0, 0, o.width, o.height});
+  f.width = static_cast<layout::u32>(part.width);
+  f.height = static_cast<layout::u32>(part.height);
+  f.crop_x = static_cast<layout::u32>(part.x);
+  f.crop_y = static_cast<layout::u32>(part.y);
+  f.whole_width = static_cast<layout::u32>(o.width);
   f.n_samples = static_cast<layout::u32>(o.samples);
   f.max_depth = static_cast<layout::u32>(o.depth);
   f.n_lights = static_cast<layout::u32>(scene.lights.size());

@@ -28,7 +28,7 @@ kdtree::Quality quality_of(BuildQuality quality) {
 
 kdtree::BuildConfig config_of(const TreeOptions& o, std::size_t n_primitives) {
   kdtree::BuildConfig config;
-  config.small_cells = o.binary_form;
+  config.small_cells = o.binary_form.value_or(true);
   config.quality = quality_of(o.quality);
   config.max_depth = o.max_depth;
   config.cost_traverse = o.cost_traverse;
@@ -70,8 +70,11 @@ scene::Scene settings_of(const scene::Scene& scene) {
 
 namespace {
 
-std::string megabytes(std::uint64_t bytes) {
-  return fmt::format("{:.1f}M", static_cast<double>(bytes) / (1 << 20));
+// As --memory takes them.
+std::string in_option(std::uint64_t bytes) {
+  const bool is_small = bytes < 1 << 20;
+  return fmt::format("{:.1f}{}", static_cast<double>(bytes) / (is_small ? 1 << 10 : 1 << 20),
+                     is_small ? "K" : "M");
 }
 
 Prepared prepare_within(const scene::Scene& scene, const scene::Geometry& geometry,
@@ -89,13 +92,13 @@ Prepared prepare_within(const scene::Scene& scene, const scene::Geometry& geomet
 
 std::string warning_of_coarser(std::uint64_t bytes, std::uint64_t most_bytes) {
   return fmt::format("the tree is coarser, so that the scene takes {} (--memory {}): tracing is slower",
-                     megabytes(bytes), megabytes(most_bytes));
+                     in_option(bytes), in_option(most_bytes));
 }
 
 void refuse_size(std::uint64_t least_bytes, std::uint64_t most_bytes) {
   throw Error(ErrorCode::out_of_memory,
               fmt::format("the scene takes {} at least; --memory {} is too little for it",
-                          megabytes(least_bytes), megabytes(most_bytes)));
+                          in_option(least_bytes), in_option(most_bytes)));
 }
 
 std::size_t Prepared::largest_array() const {
@@ -114,9 +117,9 @@ bool has_shapes(const scene::Scene& scene) {
 
 Prepared prepare_as(const TreeOptions& options, const scene::Scene& scene, const scene::Geometry& geometry) {
   const kdtree::BuildConfig config = config_of(options, std::max(geometry.size(), largest_mesh(scene)));
-  return options.memory_bytes > 0
-             ? prepare_within(scene, geometry, config, options.binary_form, options.memory_bytes)
-             : prepare(scene, geometry, config, options.binary_form);
+  const bool binary_form = options.binary_form.value_or(true);
+  return options.memory_bytes > 0 ? prepare_within(scene, geometry, config, binary_form, options.memory_bytes)
+                                  : prepare(scene, geometry, config, binary_form);
 }
 
 Prepared prepare_copied(const scene::Scene& scene, scene::Copies copies, const TreeOptions& options) {

@@ -59,7 +59,9 @@ template <class Struct>
 Struct grown(const Struct* given, const char* name) {
   Struct whole{};
   if (given == nullptr) return whole;
-  if (given->size < sizeof(std::size_t)) refuse(std::string(name) + ": its size is not set");
+  constexpr std::size_t kLargest = 65536;  // more is no struct's, but what lay in memory
+  if (given->size < sizeof(std::size_t) || given->size > kLargest)
+    refuse(std::string(name) + ": its size is not set");
   std::memcpy(&whole, given, std::min(given->size, sizeof whole));
   const auto* const bytes = reinterpret_cast<const unsigned char*>(given);
   if (given->size > sizeof whole &&
@@ -83,21 +85,38 @@ constexpr std::int32_t kTypeOf = std::is_same_v<T, float>           ? KDRAY_FLOA
                                  : std::is_same_v<T, std::int64_t>  ? KDRAY_INT64
                                                                     : KDRAY_UINT8;
 
+// "float32 or float64": what an array may be of.
+template <class... Types>
+std::string types_in_words() {
+  constexpr const char* kNames[] = {"", "float32", "float64", "uint32", "int32", "uint64", "int64", "uint8"};
+  std::string words;
+  ((words += (words.empty() ? "" : " or ") + std::string(kNames[kTypeOf<std::remove_const_t<Types>>])), ...);
+  return words;
+}
+
 // A view of C as one of C++: View is Rows<N, Types...>, Given kdray_in or kdray_out.
 template <std::size_t N, class... Types, class Given>
 Rows<N, Types...> rows_of(Rows<N, Types...>*, const Given& given, const char* name) {
   Rows<N, Types...> rows;
   if (given.count == 0) return rows;
-  if (given.data == nullptr) refuse(std::string(name) + ": the data is NULL");
+  const auto fault = [name](const std::string& what) {
+    return Error(ErrorCode::input, std::string(name) + ": " + what);
+  };
+  if (given.data == nullptr) throw fault("the data is NULL");
   const bool known = ([&] {
     if (given.type != kTypeOf<std::remove_const_t<Types>>) return false;
     const std::size_t stride = given.stride == 0                ? N * sizeof(Types)
                                : given.stride == KDRAY_SAME_ROW ? 0
                                                                 : given.stride;
-    rows = Rows<N, Types...>(static_cast<Types*>(given.data), given.count, stride);
+    try {
+      rows = Rows<N, Types...>(static_cast<Types*>(given.data), given.count, stride);
+    } catch (const Error& error) {
+      throw fault(error.what());
+    }
     return true;
   }() || ...);
-  if (!known) refuse(std::string(name) + ": kdray takes no array of type " + std::to_string(given.type));
+  if (!known)
+    throw fault("its type is " + std::to_string(given.type) + "; it is to be " + types_in_words<Types...>());
   return rows;
 }
 template <class View, class Given>

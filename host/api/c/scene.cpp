@@ -138,7 +138,10 @@ void kdray_set_texture_cache(uint64_t bytes) {
 }
 
 kdray_status kdray_scene_new(kdray_scene** scene) {
-  return guarded([&] { *needed(scene, "scene") = new kdray_scene; });
+  return guarded([&] {
+    needed(scene, "scene");
+    *scene = new kdray_scene;
+  });
 }
 kdray_status kdray_scene_load(const char* file, const kdray_load_options* options, kdray_scene** scene) {
   return guarded([&] {
@@ -183,9 +186,10 @@ kdray_status kdray_add_spheres(kdray_scene* scene, kdray_in centers, kdray_in ra
 }
 kdray_status kdray_add_cones(kdray_scene* scene, kdray_in bases, kdray_in base_radii, kdray_in apexes,
                              kdray_in apex_radii, const kdray_geometry_options* options, uint32_t* id) {
-  return add(scene, "cones",
-             {{"bases", bases}, {"base_radii", base_radii}, {"apexes", apexes}, {"apex_radii", apex_radii}},
-             options, id);
+  const kdray_field fields[] = {
+      {"bases", bases}, {"base_radii", base_radii}, {"apexes", apexes}, {"apex_radii", apex_radii}};
+  const bool pointed = apex_radii.count == 0;
+  return kdray_add_shapes(scene, "cones", fields, pointed ? 3 : 4, options, id);
 }
 kdray_status kdray_add_discs(kdray_scene* scene, kdray_in centers, kdray_in normals, kdray_in radii,
                              const kdray_geometry_options* options, uint32_t* id) {

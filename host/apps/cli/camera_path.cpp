@@ -55,7 +55,9 @@ CameraPath::CameraPath(const std::filesystem::path& file) : file_(file.string())
   const nlohmann::json document = scene::parse_json(scene::read_file(file), file_);
   const scene::JsonNode root(document, file_);
   root.expect_keys({"camera path", kFileKeys});
-  (void)root["kdray_camera_path"].integer(1, 1);
+  const auto version = root.find("kdray_camera_path");
+  if (!version) throw input_error(file_, 0, "is no camera path", "begin it with \"kdray_camera_path\": 1");
+  (void)version->integer(1, 1);
   if (const auto interpolation = root.find("interpolation")) {
     const std::string kind = interpolation->string();
     if (kind != "smooth" && kind != "linear") throw interpolation->expected("smooth or linear");

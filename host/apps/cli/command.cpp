@@ -52,6 +52,7 @@ void check_unknown(const CLI::App& app) {
   for (const std::string& word : command.remaining()) {
     const bool is_option = word.starts_with("-") && word != "-";
     if (!is_option && command.get_subcommands({}).empty()) continue;
+    if (word == "--") continue;  // behind it, nothing is an option
     const std::string name = word.substr(0, word.find('='));
     throw Error(ErrorCode::usage,
                 fmt::format("there is no {} '{}'; {}see '{} --help'", is_option ? "option" : "command", name,

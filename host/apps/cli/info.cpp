@@ -120,8 +120,8 @@ std::string parts_text(const Json& parts, std::size_t n_parts) {
   return text;
 }
 
-std::string lights_text(const Json& lights) {
-  std::string text = line("lights", fmt::format("{}", lights.size()));
+std::string lights_text(const Json& lights, bool of_file) {
+  std::string text = line("lights", fmt::format("{}{}", of_file ? "" : "none: made up, ", lights.size()));
   for (std::size_t i = 0; i < std::min(lights.size(), kShown); ++i) {
     const Json& l = lights[i];
     const bool placed = l.contains("position");
@@ -198,10 +198,16 @@ std::string report_as_text(const Json& r, std::size_t n_parts) {
   text += line("primitives", primitives_text(r["primitives"]));
   text += line("bounds", bounds.is_null() ? "none: the scene is empty"
                                           : vector_text(bounds["min"]) + " to " + vector_text(bounds["max"]));
-  text += line("camera", camera_text(r["camera"]));
+  // What is made up for the plain look is of no interest where pictures are of a studio.
+  const bool has_camera = r["camera"].is_object() && !r["camera"]["made_up"],
+             has_lights = !r["lights_made_up"];
+  const bool in_studio = !has_camera && !has_lights;
+  const char* const none = in_studio ? "none: pictures show it in a studio" : "none: made up, ";
+  text += line("camera", (has_camera ? "" : none) + (in_studio ? "" : camera_text(r["camera"])));
   text += line("background", background_text(r["background"]));
-  text += lights_text(r["lights"]) + materials_text(r["materials"]) + parts_text(r["parts"], n_parts) +
-          tree_text(r["tree"]) + memory_text(r["memory"]);
+  text += (in_studio ? line("lights", "none") : lights_text(r["lights"], has_lights)) +
+          materials_text(r["materials"]) + parts_text(r["parts"], n_parts) + tree_text(r["tree"]) +
+          memory_text(r["memory"]);
   text += line("time", fmt::format("load {}, build {}, flatten {}",
                                    seconds_in_words(r["seconds"]["load"].get<double>()),
                                    seconds_in_words(r["seconds"]["build"].get<double>()),

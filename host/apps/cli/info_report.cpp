@@ -165,7 +165,8 @@ Json camera_report(const scene::Scene& scene) {
           {"hither", c.hither},
           {"aperture", c.aperture},
           {"focus", c.focus > 0 ? c.focus : safe_length(c.at - c.from)},
-          {"in_file", scene.cameras.size()}};
+          {"in_file", scene.cameras.size()},
+          {"made_up", scene.framing.camera}};
 }
 
 // Reports a colour, or what is there instead.
@@ -210,6 +211,7 @@ Json scene_report(const scene::Scene& scene, const scene::Geometry& geometry, Js
   report["camera"] = camera_report(scene);
   report["background"] = background_report(scene);
   report["lights"] = lights_report(scene);
+  report["lights_made_up"] = scene.framing.lights;
   report["materials"] = materials_report(scene);
   report["parts"] = std::move(parts);
   report["warnings"] = scene.warnings;

@@ -113,6 +113,21 @@ Size parse_size(std::string_view option, std::string_view text, int side_max, lo
   return size;
 }
 
+PixelRect parse_crop(std::string_view option, std::string_view text) {
+  PixelRect part;
+  const std::size_t x = text.find_first_of("xX"), first = text.find('+'), second = text.rfind('+');
+  const bool good = x < first && first < second && second != std::string_view::npos &&
+                    whole_number(text.substr(0, x), part.width) &&
+                    whole_number(text.substr(x + 1, first - x - 1), part.height) &&
+                    whole_number(text.substr(first + 1, second - first - 1), part.x) &&
+                    whole_number(text.substr(second + 1), part.y) && part.width >= 1 && part.height >= 1 &&
+                    part.x >= 0 && part.y >= 0;
+  if (!good)
+    throw usage_error(option, text,
+                      "WIDTHxHEIGHT+X+Y in pixels, from the picture's top left, as in 200x100+30+40");
+  return part;
+}
+
 Samples parse_samples(std::string_view option, std::string_view text) {
   constexpr std::string_view kAdaptive = "adaptive";
   constexpr int kMost = 65536;

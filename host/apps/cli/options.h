@@ -39,6 +39,9 @@ std::uint64_t parse_bytes(std::string_view option, std::string_view text);
 // Reads "640x480"; each side from 1 to `side_max`, and no more than `pixels_max` pixels.
 Size parse_size(std::string_view option, std::string_view text, int side_max, long long pixels_max);
 
+// Reads "200x100+30+40": width and height, and where that part begins, from the top left.
+PixelRect parse_crop(std::string_view option, std::string_view text);
+
 // What --samples says: "16", "adaptive", "adaptive:0.01".
 struct Samples {
   int number = 0;     // 0: adaptive

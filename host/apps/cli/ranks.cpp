@@ -177,7 +177,7 @@ bool holds_shares(const RenderArgs& o) {
   if (o.view.transparent) say_whole("--background transparent needs it", o.quiet);
   if (o.view.look == Look::studio) say_whole("--look studio needs it", o.quiet);
   const bool needs_whole = !o.render.channels.empty() || o.view.transparent || o.view.look == Look::studio;
-  return !needs_whole && !o.tree.binary_form;  // what needs that, ODPRT refuses
+  return !needs_whole && !o.tree.binary_form.value_or(true);  // what needs that, ODPRT refuses
 }
 
 std::string faults_of_rank(const std::string& faults, int rank) {

@@ -161,6 +161,7 @@ Command add_render(CLI::App& kdray) {
       "The scene: .nff .obj .ply .stl .gltf .glb .json, also .gz and .xz of them; '-': standard input");
   add_file_options(*app, *o);
   add_picture_options(*app, o->render);
+  add_crop_option(*app, o->render);
   add_view_options(*app, o->view);
   add_division_options(*app, o->render);
   add_ranks_options(*app, o->holding);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/cli/memory.h"
@@ -69,6 +70,10 @@ void check_memory(const RenderArgs& o, scene::RenderSettings asked) {
   scene::set_size(asked, render.width, render.height);
   PictureNeeds picture{.width = static_cast<std::uint64_t>(asked.width.value_or(scene::kDefaultSide)),
                        .height = static_cast<std::uint64_t>(asked.height.value_or(scene::kDefaultSide))};
+  if (render.crop) {
+    picture.width = static_cast<std::uint64_t>(render.crop->width);
+    picture.height = static_cast<std::uint64_t>(render.crop->height);
+  }
   for (const std::string& name : render.channels) picture.n_channels += name == "normal" ? 3 : 1;
   if (o.view.transparent) ++picture.n_channels;
   picture.exr = makes_exr(o);
@@ -122,7 +127,13 @@ std::vector<float> make_transparent(Picture& picture, const PreparedScene& scene
 }
 
 image::Image to_image(const Picture& picture) {
-  image::Image image{picture.width, picture.height, std::vector<vec3>(picture.rgb.size() / 3)};
+  image::Image image{.width = picture.width,
+                     .height = picture.height,
+                     .pixels = std::vector<vec3>(picture.rgb.size() / 3),
+                     .x = picture.x,
+                     .y = picture.y,
+                     .whole_width = picture.whole_width,
+                     .whole_height = picture.whole_height};
   static_assert(sizeof(vec3) == 3 * sizeof(float));
   std::memcpy(image.pixels.data(), picture.rgb.data(), image.pixels.size() * sizeof(vec3));
   return image;
@@ -228,6 +239,7 @@ void FrameMaker::make(RenderArgs& o) {
   }
   Picture picture = render(o);
   if (!leads()) return;
+  has_odd_side_ = picture.width % 2 != 0 || picture.height % 2 != 0;
   std::vector<float> alpha = make_transparent(picture, *seen_, scene_->device(), o);
   if (!o.quiet)
     for (const std::string& warning : picture.warnings) say(warning);
@@ -241,7 +253,7 @@ void FrameMaker::make(RenderArgs& o) {
     scene_->keep();
     scene_->add_to(figures.seconds);
   }
-  is_first_ = false;
+  const bool is_first = std::exchange(is_first_, false);
   figures.seconds.total = total_.seconds();
   total_.restart();
 
@@ -250,7 +262,7 @@ void FrameMaker::make(RenderArgs& o) {
   for (const auto& file : written.files) stats["files"].push_back(file.string());
   if (!o.stats.empty()) write_stats(o.stats, stats);
   if (!o.timeline.empty()) write_text(o.timeline, renderer_->timeline() + "\n");
-  if (!o.quiet) print_render_summary(stats, written.nan_values, o.verbose);
+  if (!o.quiet) print_render_summary(stats, written.nan_values, o.verbose, is_first);
 }
 
 }  // namespace kdray::cli

@@ -53,6 +53,8 @@ class FrameMaker {
   // Renders a frame of the scene, and writes its files.
   void make(RenderArgs& o);
 
+  bool has_odd_side() const { return has_odd_side_; }  // the last picture
+
  private:
   Picture render(const RenderArgs& o);
 
@@ -62,7 +64,7 @@ class FrameMaker {
   std::optional<PreparedScene> shown_, seen_;  // in its look; and by the frame's view
   std::optional<Renderer> renderer_;
   std::optional<Turntable> turntable_;
-  bool is_first_ = true;
+  bool is_first_ = true, has_odd_side_ = false;
 };
 
 }  // namespace kdray::cli

@@ -60,6 +60,14 @@ void add_picture_options(CLI::App& app, RenderOptions& o) {
   put_into_group(app, "Picture", kOptions);
 }
 
+void add_crop_option(CLI::App& app, RenderOptions& o) {
+  add_text(app, "--crop", "WxH+X+Y",
+           "Render just this part of the picture, X and Y pixels from its top left: with the pixels that the "
+           "whole one has there",
+           [&o](const std::string& text) { o.crop = parse_crop("--crop", text); })
+      ->group("Picture");
+}
+
 void show_most_used_first(CLI::App& app) {
   static constexpr std::array kMostUsed = {"--output", "--size", "--samples", "--look",       "--from",
                                            "--at",     "--up",   "--depth",   "--background", "--device"};

@@ -15,6 +15,9 @@ namespace kdray::cli {
 // --size --depth --min-weight --samples --grid
 void add_picture_options(CLI::App& app, RenderOptions& options);
 
+// --crop
+void add_crop_option(CLI::App& app, RenderOptions& options);
+
 // What most people need of render and view comes first in help. Called when all options have been added.
 void show_most_used_first(CLI::App& app);
 

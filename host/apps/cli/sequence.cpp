@@ -5,6 +5,7 @@
 
 #include <cctype>
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -14,11 +15,14 @@
 #include <system_error>
 #include <thread>
 
+#include "accel/flatten/frame.h"
 #include "apps/cli/camera_path.h"
 #include "apps/cli/output.h"
+#include "apps/cli/ranks.h"
 #include "base/error.h"
 #include "base/hash.h"
 #include "engine/checkpoint/leases.h"
+#include "scene/import/load.h"
 
 namespace kdray::cli {
 
@@ -96,6 +100,7 @@ std::string settings_of(const RenderArgs& o) {
   };
   add("scene", fs::path(o.scene.file).filename().string());
   add("--size", fmt::format("{}x{}", r.width, r.height));
+  if (r.crop) add("--crop", flatten::in_words(*r.crop));
   add("--samples",
       r.adaptive_target > 0 ? fmt::format("adaptive:{}", r.adaptive_target) : fmt::format("{}", r.samples));
   add("--depth", fmt::format("{}", r.depth));
@@ -121,6 +126,9 @@ std::string settings_of(const RenderArgs& o) {
   add("--focus", in_text(v.focus));
   add("--background", o.view.transparent ? "transparent" : in_text(v.background));
   add("--headlight", fmt::format("{}", v.headlight));
+  if (const auto& framed = load.framed)
+    add("the box that is shown", fmt::format("{} to {}, light {}", fmt::join(framed->box.least, ","),
+                                             fmt::join(framed->box.greatest, ","), framed->illuminance));
   return text;
 }
 
@@ -174,10 +182,40 @@ RenderArgs args_of(const RenderArgs& o, const std::optional<CameraPath>& path, i
   return frame;
 }
 
+// Returns what all frames are framed for, so that what moves does so in the film, and light that is fixed
+// stays as bright: the box of what is shown in the first frame, the last and three between. Nothing where
+// frames are of one scene, or their files have cameras and lights.
+std::optional<Framed> framed_of(const RenderArgs& o, const std::optional<CameraPath>& path) {
+  constexpr int kLooks = 4;
+  const FrameRange range = *o.checkpoint.frames;
+  if (!is_numbered(o) && !o.checkpoint.fps) return std::nullopt;
+  DBox box;
+  double illuminance = 0;
+  int last = range.first - 1;
+  for (int i = 0; i <= kLooks; ++i) {
+    const auto number = static_cast<int>(range.first + (std::int64_t{range.last} - range.first) * i / kLooks);
+    if (number == last) continue;
+    last = number;
+    RenderArgs frame = args_of(o, path, number);
+    frame.quiet = true;
+    frame.tree.binary_form = takes_binary_form(o.render.traversal, o.render.precision, o.render.channels);
+    if (i == 0 && holds_shares(frame)) return std::nullopt;
+    const scene::Scene seen = scene::load(frame.scene.file, frame.scene.load);
+    if (i == 0) illuminance = seen.framing.illuminance;
+    if (i == 0 && !seen.framing.camera && !seen.framing.lights && illuminance == 0) return std::nullopt;
+    if (!seen.framing.box.empty()) box.grow(seen.framing.box.lo), box.grow(seen.framing.box.hi);
+  }
+  if (box.empty()) return std::nullopt;
+  return Framed{{{box.lo.x, box.lo.y, box.lo.z}, {box.hi.x, box.hi.y, box.hi.z}}, illuminance};
+}
+
 class Sequence {
  public:
   explicit Sequence(const RenderArgs& o) : o_(o), range_(*o.checkpoint.frames) {
-    if (!o.checkpoint.camera_path.empty()) path_.emplace(o.checkpoint.camera_path);
+    if (!o_.checkpoint.camera_path.empty()) path_.emplace(o_.checkpoint.camera_path);
+    for (int number = range_.first; path_ && number <= range_.last; ++number)
+      static_cast<void>(path_->at(number));  // refuses what is no camera
+    o_.scene.load.framed = framed_of(o_, path_);
   }
 
   int render() {
@@ -188,12 +226,15 @@ class Sequence {
     return 0;
   }
 
+  // Of the pictures: H.264 wants sides that 2 divides.
+  bool has_odd_side() const { return maker_ && maker_->has_odd_side(); }
+
  private:
   void make(int number);
   void render_shared();
   void make_what_is_missing();
 
-  const RenderArgs& o_;
+  RenderArgs o_;
   FrameRange range_;
   std::optional<CameraPath> path_;
   std::optional<FrameMaker> maker_;
@@ -258,12 +299,22 @@ std::string quoted(const std::string& name) {
   return text + "'";
 }
 
-void tell_of_film(const RenderArgs& o) {
+// Returns the name as ffmpeg has it, to which another % than that of the number is a %%.
+std::string pattern_of_ffmpeg(const std::string& pattern) {
+  const std::optional<Place> place = place_in(pattern);
+  std::string text;
+  for (std::size_t i = 0; i < pattern.size(); ++i)
+    text += pattern[i] == '%' && !(place && i == place->first) ? "%%" : pattern.substr(i, 1);
+  return text;
+}
+
+void tell_of_film(const RenderArgs& o, bool has_odd_side) {
   const fs::path pictures = pattern_of(name_of_picture(o, o.scene.file));
   if (ending_of(pictures) != ".png") return;
   const fs::path film = default_picture(o.scene.file).replace_extension(".mp4");
-  say(fmt::format("a film of it: ffmpeg -framerate 24 -start_number {} -i {} -pix_fmt yuv420p {}",
-                  o.checkpoint.frames->first, quoted(pictures), quoted(film)));
+  say(fmt::format("a film of it: ffmpeg -framerate 24 -start_number {} -i {} {}-pix_fmt yuv420p {}",
+                  o.checkpoint.frames->first, quoted(pattern_of_ffmpeg(pictures)),
+                  has_odd_side ? "-vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2' " : "", quoted(film)));
 }
 
 }  // namespace
@@ -284,8 +335,9 @@ void check_checkpoint(const RenderArgs& o) {
 }
 
 int render_sequence(const RenderArgs& o) {
-  const int code = Sequence(o).render();
-  if (o.checkpoint.turntable > 0 && !o.quiet) tell_of_film(o);
+  Sequence sequence(o);
+  const int code = sequence.render();
+  if (o.checkpoint.turntable > 0 && !o.quiet) tell_of_film(o, sequence.has_odd_side());
   return code;
 }
 

@@ -221,9 +221,9 @@ std::string missed_target_line(const Json& stats) {
   return missed ? samples_line(stats) : "";
 }
 
-void print_render_summary(const Json& stats, std::size_t nan_values, bool verbose) {
+void print_render_summary(const Json& stats, std::size_t nan_values, bool verbose, bool is_first) {
   say(render_line(stats));
-  say_if_any(cold_start_line(stats));
+  if (is_first) say_if_any(cold_start_line(stats));
   say_if_any(glass_line(stats));
   if (verbose)
     print_details(stats);

@@ -113,7 +113,8 @@ std::string scene_message(std::span<const SceneSource> sources, std::size_t numb
       box.empty() ? Json(nullptr) : Json{{box.lo.x, box.lo.y, box.lo.z}, {box.hi.x, box.hi.y, box.hi.z}};
   json["depth"] = given.depth > 0 ? given.depth : asked.depth.value_or(5);
   json["samples"] = given.samples > 0 ? Json(given.samples) : Json("adaptive");
-  json["look"] = kLooks[static_cast<std::size_t>(settings.look)];
+  const bool is_plain = settings.look == kdray::Look::plain;
+  json["look"] = is_plain ? "plain" : scene.framing.studio ? "studio" : "as given";  // by the file
   json["headlight"] = settings.view.headlight;
   if (number < sources.size() && !sources[number].file.empty())
     json["smooth"] = settings.load.smooth_degrees.value_or(0);

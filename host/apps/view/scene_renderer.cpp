@@ -35,14 +35,17 @@ Vec3 triple_of(const dvec3& v) {
 }  // namespace
 
 SceneRenderer::SceneRenderer(LoadedScene loaded, const Settings& settings)
-    : loaded_(std::move(loaded)), settings_(settings), studio_(loaded_.studio) {}
+    : loaded_(std::move(loaded)), settings_(settings) {
+  studio_.scene = loaded_.studio;
+}
 
-const PreparedScene& SceneRenderer::scene(kdray::Look look) const {
-  if (look == kdray::Look::plain) return loaded_.scene;
-  std::call_once(studio_made_, [this] {
-    if (!studio_) studio_ = loaded_.scene.in_studio(settings_.studio_instead);
+const PreparedScene& SceneRenderer::scene(const ShownLook& shown) const {
+  if (shown.look == kdray::Look::plain) return loaded_.scene;
+  Studio& studio = shown.instead == settings_.studio_instead ? studio_ : instead_;
+  std::call_once(studio.made, [&] {
+    if (!studio.scene) studio.scene = loaded_.scene.in_studio(shown.instead);
   });
-  return *studio_;
+  return *studio.scene;
 }
 
 std::vector<std::filesystem::path> SceneRenderer::files() const {

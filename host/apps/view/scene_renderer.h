@@ -44,8 +44,8 @@ class SceneRenderer {
 
   const Settings& settings() const { return settings_; }
   // Returns it in the look of the command line, or in another one.
-  const PreparedScene& scene() const { return scene(settings_.look); }
-  const PreparedScene& scene(kdray::Look look) const;
+  const PreparedScene& scene() const { return scene({settings_.look, settings_.studio_instead}); }
+  const PreparedScene& scene(const ShownLook& shown) const;
   // Returns all files that were read to make it, and those that were not found.
   std::vector<std::filesystem::path> files() const;
   // Returns the camera of the scene, or of the command line.
@@ -62,8 +62,12 @@ class SceneRenderer {
 
   LoadedScene loaded_;
   Settings settings_;
-  mutable std::once_flag studio_made_;
-  mutable std::optional<PreparedScene> studio_;  // made when it is first asked for
+  struct Studio {
+    std::once_flag made;
+    std::optional<PreparedScene> scene;
+  };
+  // Of the command line, and in place of the file's own camera and lights: made when first asked for.
+  mutable Studio studio_, instead_;
   std::optional<Renderer> renderer_;
   int queues_ = 0;  // of the renderer
   std::optional<Picker> picker_;

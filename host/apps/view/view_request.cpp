@@ -62,8 +62,9 @@ int queues_of(const ViewRequest& request, const Settings& settings) {
   return request.queues > 0 ? request.queues : settings.device.queues;
 }
 
-kdray::Look look_of(const ViewRequest& request, const Settings& settings) {
-  return request.look.value_or(settings.look);
+ShownLook look_of(const ViewRequest& request, const Settings& settings) {
+  if (request.look) return {*request.look, true};
+  return {settings.look, settings.studio_instead};
 }
 
 namespace {
@@ -138,9 +139,10 @@ std::string command_for(const ViewRequest& request, const Settings& settings, co
   if (settings.load.texture_bytes > 0)
     text += fmt::format(" --texture-memory {}", settings.load.texture_bytes);
   if (!settings.load.asset_root.empty()) text += " --asset-root " + quoted(settings.load.asset_root.string());
-  if (look_of(request, settings) == kdray::Look::plain)
+  const ShownLook shown = look_of(request, settings);
+  if (shown.look == kdray::Look::plain)
     text += " --look plain";
-  else if (settings.studio_instead)
+  else if (shown.instead)
     text += " --look studio";
   return text + view_options(view_of(request, settings)) + picture_options(options) +
          division_options(options, queues_of(request, settings));

@@ -28,7 +28,7 @@ struct ViewRequest {
   int depth = 0;
   double min_weight = -1, headlight = 0;
   std::optional<std::array<float, 3>> background;  // linear RGB, as View's
-  std::optional<kdray::Look> look;
+  std::optional<kdray::Look> look;                 // none: as the command line has it
   Samples samples = Samples::as_given;
   int n_samples = 1;    // Samples::number
   std::string channel;  // empty: the picture itself
@@ -47,11 +47,17 @@ struct Settings {
   bool studio_instead = false;  // of a file's own camera and lights
 };
 
+// A studio that was asked for stands in for a file's own camera and lights.
+struct ShownLook {
+  kdray::Look look = kdray::Look::studio;
+  bool instead = false;
+};
+
 View view_of(const ViewRequest& request, const Settings& settings);
 // Returns the options of the finished picture.
 RenderOptions render_of(const ViewRequest& request, const Settings& settings);
 int queues_of(const ViewRequest& request, const Settings& settings);
-kdray::Look look_of(const ViewRequest& request, const Settings& settings);
+ShownLook look_of(const ViewRequest& request, const Settings& settings);
 
 // Returns the command that renders just this picture, bit for bit, wherever it runs. `scene`: a file.
 std::string command_for(const ViewRequest& request, const Settings& settings, const std::string& scene);

@@ -24,6 +24,8 @@ constexpr std::uint32_t kTile = 16;
 layout::Frame small_frame(layout::Frame frame) {
   frame.width = (frame.width + kShrink - 1) / kShrink;
   frame.height = (frame.height + kShrink - 1) / kShrink;
+  frame.crop_x /= kShrink;
+  frame.crop_y /= kShrink;
   frame.x_scale *= kShrink;
   frame.y_scale *= kShrink;
   frame.n_samples = 1;

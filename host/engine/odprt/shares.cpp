@@ -38,7 +38,7 @@ class TileProbe {
   TileProbe(const layout::Frame& frame, std::span<const layout::PartCell> directory)
       : frame_(frame), directory_(directory), eye_(vector(frame.eye)) {}
 
-  // At (x, y) in pixels. KDRAY_NO_PART: none.
+  // At (x, y) in pixels of the whole picture. KDRAY_NO_PART: none.
   std::uint32_t first_part(double x, double y) const {
     const dvec3 across = (x * frame_.x_scale + frame_.x_offset) * vector(frame_.right) +
                          (y * frame_.y_scale + frame_.y_offset) * vector(frame_.up);
@@ -74,8 +74,10 @@ std::size_t queue_of(layout::u32 tile, const layout::Frame& frame, const TilePro
                      std::span<const std::size_t> owner, std::size_t n_queues) {
   std::vector<int> counts(n_queues);
   for (int i = 0; i < kProbes * kProbes; ++i) {
-    const double x = (KDRAY_TILE_COLUMN(tile) + (i % kProbes + 0.5) / kProbes) * frame.tile_width;
-    const double y = (KDRAY_TILE_ROW(tile) + (i / kProbes + 0.5) / kProbes) * frame.tile_height;
+    const double x =
+        frame.crop_x + (KDRAY_TILE_COLUMN(tile) + (i % kProbes + 0.5) / kProbes) * frame.tile_width;
+    const double y =
+        frame.crop_y + (KDRAY_TILE_ROW(tile) + (i / kProbes + 0.5) / kProbes) * frame.tile_height;
     const std::uint32_t part = probe.first_part(x, y);
     if (part != KDRAY_NO_PART) ++counts[owner[part]];
   }

@@ -26,6 +26,8 @@ struct Work {
   std::span<const layout::u32> samples = {};  // empty: tiles
   // A queue delivers what it has when a list has taken so long, and begins another.
   double seconds = std::numeric_limits<double>::infinity();
+  // When the tiles that nobody has taken are left: no queue takes more than it will have done by then.
+  double left_after = std::numeric_limits<double>::infinity();
 };
 
 // What the queues of a frame share.
@@ -55,6 +57,7 @@ class Queue {
   std::optional<std::span<const layout::u32>> more(Tiles& tiles, const wavefront::Progress& progress,
                                                    const Work& work, Shared& shared);
   std::size_t tiles_of_launch() const;
+  std::size_t tiles_in_time(const wavefront::Progress& progress, double seconds) const;
   std::size_t shortest_launch(const wavefront::Progress& progress) const;
   void deliver(std::span<const layout::u32> tiles, const Work& work, Shared& shared);
   void note_costs(std::span<const layout::u32> tiles, Shared& shared);

@@ -113,11 +113,13 @@ frame::Entries Executor::render_alone(frame::List list, const frame::Sink& sink,
   const Division division = pool_->size() == 1 ? Division::contiguous : task_.division;
   Tiles tiles(std::move(list.entries), division, pool_->size(), task_.checkpoint != nullptr);
   const Timer timer;
-  pool_->render(tiles, {.sink = sink, .first_pixel = list.first_place, .samples = list.samples},
-                std::min(kStep, list.seconds), [&] {
-                  if (timer.seconds() >= list.seconds) tiles.close();
-                  progress(static_cast<double>(pool_->shared().tiles_done));
-                });
+  pool_->render(
+      tiles,
+      {.sink = sink, .first_pixel = list.first_place, .samples = list.samples, .left_after = list.seconds},
+      std::min(kStep, list.seconds), [&] {
+        if (timer.seconds() >= list.seconds) tiles.close();
+        progress(static_cast<double>(pool_->shared().tiles_done));
+      });
   return tiles.left_over();
 }
 

@@ -42,7 +42,7 @@ void ExactRays::all_hits(std::size_t i, std::vector<ExactHit>& hits) const {
   std::erase_if(hits, [&](ExactHit& hit) {
     if (t_min != 0 && hit.t == 0) return true;
     hit.t = t_min + std::scalbn(hit.t, line.exponent);
-    return !(hit.t < t_max) || (mask != 0xffffffffu && !is_seen(hit, mask));
+    return !(hit.t < t_max) || (context_->has_masks() && !is_seen(hit, mask));
   });
 }
 
@@ -79,7 +79,7 @@ std::optional<ExactHit> ExactRays::closest_anew(std::size_t i, const LocalLine& 
   }
   const std::uint32_t mask = rays_->mask(i);
   std::erase_if(hits, [&](const ExactHit& hit) {
-    return !allows(i, hit.t) || (mask != 0xffffffffu && !is_seen(hit, mask));
+    return !allows(i, hit.t) || (context_->has_masks() && !is_seen(hit, mask));
   });
   if (hits.empty()) return std::nullopt;
   scene_.sort(hits);

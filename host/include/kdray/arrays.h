@@ -10,10 +10,15 @@
 // Threads A view refers to memory that the caller keeps, and leaves alone, as long as a call lasts.
 #pragma once
 
+#if __cplusplus < 202002L
+#error "kdray's headers are C++20: compile with -std=c++20 or later"
+#endif
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <ranges>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -22,6 +27,11 @@
 #include "kdray/error.h"
 
 namespace kdray {
+
+template <class T>
+inline constexpr bool kIsRowOrValue = std::is_arithmetic_v<T>;
+template <class T, std::size_t M>
+inline constexpr bool kIsRowOrValue<std::array<T, M>> = std::is_arithmetic_v<T>;
 
 // N values of one of Types to a row. `Types` are const for what is read, plain for what is written.
 template <std::size_t N, class... Types>
@@ -48,12 +58,13 @@ class Rows {
     if ((!std::is_const_v<Types> && ...) && n > 1 && stride_ < kBytes<T>)
       refuse<T>("are to be written and overlap");
   }
-  // clang-format on
 
-  // n rows of N values, one after the other; or n values where N is 1.
-  template <class Range>
-  requires requires(const Range& r) { std::data(r), std::size(r); }
+  // n rows of N values, one after the other (numbers, or a std::array for each row); or n values where N is
+  // 1. A view of a temporary is for the call that it is made in.
+  template <std::ranges::contiguous_range Range>
+    requires kIsRowOrValue<std::ranges::range_value_t<Range>>
   Rows(Range&& range) : Rows(of_range(std::data(range), std::size(range))) {}
+  // clang-format on
 
   // n rows that lie within this memory, the first at its begin.
   template <class T>

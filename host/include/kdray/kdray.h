@@ -100,11 +100,12 @@ struct Channel {
 };
 
 struct Picture {
-  int width = 0, height = 0;
-  std::vector<float> rgb;  // linear, 3 * width * height, from the top left
+  int width = 0, height = 0;  // of the part that RenderOptions::crop asks for, or of the whole picture
+  std::vector<float> rgb;     // linear, 3 * width * height, from the top left
   std::vector<Channel> channels;
   // What went wrong on the way, one line each: the picture is right all the same.
   std::vector<std::string> warnings;
+  int x = 0, y = 0, whole_width = 0, whole_height = 0;  // where it lies, in a picture of that size
 };
 
 // Whether rays of these options walk the tree's binary form, so that TreeOptions::binary_form is to be left

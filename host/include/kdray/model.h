@@ -20,6 +20,11 @@ namespace kdray {
 using Vec3 = std::array<double, 3>;
 using Color = std::array<float, 3>;
 
+struct Extent {
+  Vec3 least, greatest;
+  bool operator==(const Extent&) const = default;
+};
+
 // A geometry of a Scene: 0 is the first that was added, or all that was in the file. Never given twice.
 using GeometryId = std::uint32_t;
 inline constexpr GeometryId kNoGeometry = 0xffffffffu;
@@ -62,7 +67,8 @@ struct Spheres {
 // Truncated cones and cylinders without caps, seen from both sides, from one end of the axis to the other.
 struct Cones {
   Points bases, apexes;
-  Values base_radii, apex_radii;  // at least 0, not both 0; one for each, or one for all
+  // At least 0, not both 0; one for each, or one for all. Without apex_radii they are pointed.
+  Values base_radii, apex_radii = {};
 };
 
 // Flat, seen from both sides.

@@ -32,6 +32,13 @@ enum class Look {
   studio  // PreparedScene::in_studio()
 };
 
+// What a view, lights and an exposure are made up for where the file has none, in place of its own bounds.
+struct Framed {
+  Extent box;
+  double illuminance = 0;  // of a glTF file's lights, that its exposure makes 1; 0: at the box's middle
+  bool operator==(const Framed&) const = default;
+};
+
 // How a scene file is read.
 struct LoadOptions {
   // Triangles without normals get them from the faces around each corner, where the surface turns by no more
@@ -48,6 +55,7 @@ struct LoadOptions {
   // A folder below which a scene may name files (pictures, buffers) that are not beside it or below; empty:
   // none.
   std::filesystem::path asset_root = {};
+  std::optional<Framed> framed = {};  // the same for all frames of a film
   bool operator==(const LoadOptions&) const = default;
 };
 
@@ -68,7 +76,8 @@ struct TreeOptions {
   double cost_intersect = 2.0;  // of one test: of a block of primitives
   // The most that the scene may take when it is traced; the tree gets coarser; 0: no limit.
   std::uint64_t memory_bytes = 0;
-  bool binary_form = true;  // is made too; few options take it (takes_binary_form)
+  // Is made too; few options take it (takes_binary_form). Unset: for a Renderer, and not by Scene::commit().
+  std::optional<bool> binary_form = {};
   VertexPrecision geometry = VertexPrecision::float32;
   bool operator==(const TreeOptions&) const = default;
 };
@@ -108,8 +117,9 @@ struct DeviceOptions {
   int compute_units = 0;  // that many of the device's, as a sub-device; 0: all of them
   Schedule schedule = Schedule::automatic;
   std::filesystem::path programs = {};  // folder where built programs are looked for and kept; empty: none
-  // What is built stays in memory for others of this process: for programs that commit many scenes.
-  bool remember_programs = false;
+  // What is built stays in memory for others of this process: for programs that commit many scenes. Unset:
+  // what Scene::commit() builds.
+  std::optional<bool> remember_programs = {};
   // Programs of just the scene's features are made though there may be some in that folder that have more and
   // would do: these take a few percent longer over a frame, and no seconds to compile.
   bool exact_programs = false;
@@ -169,10 +179,18 @@ struct LedgerOptions {
   double lease_seconds = 5;   // a process that isn't heard of for so long has lost what it had in work
 };
 
+// A part of a picture, in pixels from its top left.
+struct PixelRect {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
 struct RenderOptions {
   // 0: what the scene or its camera asks for, or 1024x1024; where one is given, the other follows from the
   // aspect ratio that these ask for, or 1.
   int width = 0, height = 0;
+  // This part of the picture alone, with the pixels that the whole one has there, bit for bit; with adaptive
+  // sampling those at its edges may get other samples, as their neighbours have a say in it.
+  std::optional<PixelRect> crop = {};
   int depth = 0;           // 0: what the scene asks for, or 5; the eye ray is depth 1
   double min_weight = -1;  // < 0: what the scene asks for, or kDefaultMinWeight; 0: no cut
   int samples = 0;         // per pixel, stratified; 0: what the scene asks for, or 1

@@ -1,6 +1,7 @@
 // What    What a program asks of a scene with rays and points, and where the answers go.
-// Shape   Views of the caller's arrays (arrays.h). Rays are float or double, every array by itself; an answer
-//         that isn't wanted is an empty view, and is not computed.
+// Shape   Views of the caller's arrays (arrays.h). Rays are float or double, every array by itself; with one
+//         of doubles they are rays of doubles. An answer that isn't wanted is an empty view, and is not
+//         computed.
 // Units   The scene's; t counts in multiples of the direction as it was given.
 // Errors  kdray::Error: ErrorCode::input for sizes that don't match and, unless InvalidRays::miss says
 //         otherwise, for an invalid ray (NaN anywhere, an infinite origin, t_min = inf, a direction that is
@@ -47,7 +48,8 @@ struct HitsOut {
   // Triangles: weights of the second and third corner; cones: u from base to apex.
   ValuesOut u = {}, v = {};
   // Of unit length, of the surface as it is (no vertex normals): of a triangle to the side from which its
-  // corners run counterclockwise, of a sphere outward, of a cone away from its axis.
+  // corners run counterclockwise (in a mirrored instance: in the prototype), of a sphere outward, of a cone
+  // away from its axis.
   PointsOut normal = {};
   PointsOut point = {};  // origin + t*direction
   // Of the geometry, from 0, where that is instances; kNoInstance: a miss, or what is none. The primitive is
@@ -86,6 +88,7 @@ struct AllHitsOptions : QueryOptions {
 };
 
 // Of each point what lies nearest to it; of several at one distance the one that comes first in the scene.
+// Triangles of which two corners are the same floats are left out.
 struct ClosestPointsOut {
   ValuesOut distance = {};  // infinity: nothing lies within the radius
   PointsOut point = {};
@@ -94,7 +97,7 @@ struct ClosestPointsOut {
   WordsOut instance = {};  // as HitsOut
 };
 
-// Masks are for rays: points see every geometry.
+// Masks are for rays: points see every geometry, and so do pictures.
 struct PointOptions {
   double radius = std::numeric_limits<double>::infinity();  // how far to look
   // A point that is not finite: an error that names it, or one that has nothing near it, and is inside of

@@ -6,7 +6,8 @@
 // Errors  Everything throws kdray::Error. An array that is wrong is ErrorCode::input, and the message names
 //         the array and the element; nothing of the scene has changed then.
 // Threads One thread at a time adds, changes and commits. Any number may ask, also while it commits: they are
-//         answered from the state before until commit() returns.
+//         answered from the state before until commit() returns. Nobody may ask what is destroyed
+//         meanwhile; what was moved from may be assigned to or destroyed, and nothing else.
 #pragma once
 
 #include <array>
@@ -41,8 +42,8 @@ struct Picture;
 void set_texture_cache(std::uint64_t bytes);
 
 struct CommitOptions {
-  TreeOptions tree = {.binary_form = false};
-  DeviceOptions device = {.remember_programs = true};
+  TreeOptions tree = {};
+  DeviceOptions device = {};
   // Where only vertices have moved, the tree is fitted to them unless what a ray is expected to cost has
   // grown by more than this since it was built. 0: it is always built anew (docs/embed.md).
   double refit_growth = 1.5;
@@ -54,10 +55,6 @@ struct CommitReport {
   bool refitted = false;
   double growth = 1;  // of what a ray is expected to cost, since the tree was built; above the limit: why
   VertexPrecision geometry = VertexPrecision::float32;  // what was asked for; of automatic what came of it
-};
-
-struct Extent {
-  Vec3 least, greatest;
 };
 
 struct GeometryInfo {

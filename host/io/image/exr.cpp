@@ -169,10 +169,20 @@ Image decode_exr(std::string_view bytes, const std::string& file, std::uint64_t 
 
 namespace {
 
-// OpenEXR takes a base pointer and strides; it does not write through the pointer of an output slice.
-Imf::Slice slice(const float* values, std::size_t step, int width) {
-  return {Imf::FLOAT, const_cast<char*>(reinterpret_cast<const char*>(values)), step * sizeof(float),
-          step * sizeof(float) * static_cast<std::size_t>(width)};
+// OpenEXR takes the address that pixel (0, 0) of the whole picture would have, which may lie outside, and
+// strides; it does not write through the pointer of an output slice.
+Imf::Slice slice(const float* values, std::size_t step, const Image& image) {
+  const std::size_t bytes = step * sizeof(float), row = bytes * static_cast<std::size_t>(image.width);
+  const auto before = static_cast<std::size_t>(image.y) * row + static_cast<std::size_t>(image.x) * bytes;
+  return {Imf::FLOAT, reinterpret_cast<char*>(reinterpret_cast<std::uintptr_t>(values) - before), bytes, row};
+}
+
+Imf::Header header_of(const Image& image) {
+  if (image.whole_width == 0) return {image.width, image.height};
+  const Imath::Box2i part(Imath::V2i(image.x, image.y),
+                          Imath::V2i(image.x + image.width - 1, image.y + image.height - 1));
+  const Imath::Box2i whole(Imath::V2i(0, 0), Imath::V2i(image.whole_width - 1, image.whole_height - 1));
+  return {whole, part};
 }
 
 }  // namespace
@@ -187,12 +197,12 @@ std::string exr_name(const std::string& channel) {
 
 std::string encode_exr(const Image& image, std::span<const Channel> channels) {
   static_assert(sizeof(vec3) == 3 * sizeof(float));
-  Imf::Header header(image.width, image.height);
+  Imf::Header header = header_of(image);
   header.compression() = Imf::ZIP_COMPRESSION;
   Imf::FrameBuffer frame;
   const auto add = [&](const std::string& name, const float* values, std::size_t step) {
     header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-    frame.insert(name, slice(values, step, image.width));
+    frame.insert(name, slice(values, step, image));
   };
   const float* rgb = &image.pixels.data()->x;
   add("R", rgb, 3), add("G", rgb + 1, 3), add("B", rgb + 2, 3);

@@ -11,7 +11,8 @@
 
 namespace kdray::image {
 
-// Writes the colour as R, G and B, its alpha as A where it has one, `channels` under the names that they have
+// Writes what is a part of a picture as such: the data window within the whole's display window. Writes the
+// colour as R, G and B, its alpha as A where it has one, `channels` under the names that they have
 // in an EXR (exr_name), and the manifests of those that have one as attributes, "kdray/CHANNEL/manifest".
 std::string encode_exr(const Image& image, std::span<const Channel> channels);
 

@@ -14,6 +14,8 @@ struct Image {
   std::vector<vec3> pixels;  // width * height, row 0 is the top
   // The share of each pixel that is covered; `pixels` are multiplied by it already. Empty: all of each pixel.
   std::vector<float> alpha = {};
+  // Where it lies in a picture of that size, of which it is a part. 0: it is the whole.
+  int x = 0, y = 0, whole_width = 0, whole_height = 0;
 };
 
 // One float channel beside the colour, as wide and high as the picture: "depth" (multiples of the unit-length

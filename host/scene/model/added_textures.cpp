@@ -27,8 +27,7 @@ void spread(const std::uint8_t* from, std::uint32_t channels, std::uint8_t* to) 
 std::uint32_t texture_of(PictureId id, const char* name, bool curved, Texturing& texturing) {
   if (id == kNoPicture) return kNone;
   if (id >= texturing.pictures.size())
-    throw Error(ErrorCode::usage,
-                fmt::format("material: {}: there is no picture {}; add it first", name, id));
+    throw Error(ErrorCode::usage, fmt::format("material: {}: there is no such picture; add it first", name));
   return texturing.add(Texture{.picture = id, .minify = Minify::linear_mipmap_linear, .curved = curved});
 }
 

@@ -217,8 +217,15 @@ void frame_scene(Scene& scene) {
 
 void frame_scene(Scene& scene, const Framed& framed) {
   const DBox& bounds = framed.bounds;
-  const DBox box = scene.camera || bounds.empty() ? bounds : worth_showing(scene, framed);
-  scene.framing = {.camera = !scene.camera, .lights = scene.lights.empty() && !scene.unlit, .box = box};
+  DBox box = bounds;
+  if (const auto& given = scene.load_options.framed)
+    box = box_of(given->box);
+  else if (!scene.camera && !bounds.empty())
+    box = worth_showing(scene, framed);
+  scene.framing = {.camera = !scene.camera,
+                   .lights = scene.lights.empty() && !scene.unlit,
+                   .box = box,
+                   .illuminance = scene.framing.illuminance};
   if (!scene.camera) {
     const double scale = box.empty() ? 1 : scale_of(box);
     const Camera usual{.at = DBox{box.lo * scale, box.hi * scale}.center() / scale, .vertical_fov = kFov};

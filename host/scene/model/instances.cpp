@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/local_space.h"
 #include "layout/tree.layout.h"
 #include "scene/model/scene.h"
 #include "scene/model/tangents.h"
@@ -59,12 +60,16 @@ void turn_round(Scene& scene) {
 void apply_transform(const dmat4& m, Scene& scene) {
   const dmat3 linear(m);
   for (dvec3& p : scene.vertices) p = transform_point(m, p);
+  // At a size of about 1, so that no product leaves double's range.
+  const double size =
+      std::max({largest_component(linear[0]), largest_component(linear[1]), largest_component(linear[2])});
+  const dmat3 unit = linear * scale_to_one(size);
   if (!scene.normals.empty()) {
-    const dmat3 of_normals = glm::transpose(glm::inverse(linear));
+    const dmat3 of_normals = glm::transpose(glm::inverse(unit));
     for (vec3& n : scene.normals) n = vec3(glm::normalize(of_normals * dvec3(n)));
   }
-  move_tangents(linear, scene.texturing.tangents);
-  if (glm::determinant(linear) < 0) turn_round(scene);
+  move_tangents(unit, scene.texturing.tangents);
+  if (glm::determinant(unit) < 0) turn_round(scene);
   primitives::for_each_shape([&](auto kind) {
     auto& shapes = decltype(kind)::of(scene);
     if (shapes.empty()) return;

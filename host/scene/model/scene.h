@@ -105,6 +105,11 @@ struct Studio {
   std::optional<dvec3> open_to = {};  // of one that is open on one side: the way out
 };
 
+inline DBox box_of(const Extent& extent) {
+  const auto& [lo, hi] = extent;
+  return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
+}
+
 // What frame_scene() made up where the file has nothing, so that another view can be made up in the same way
 // (frame.h).
 struct Framing {
@@ -112,6 +117,7 @@ struct Framing {
   DBox box;                           // of what is worth showing; empty for a scene of nothing
   std::optional<Studio> studio = {};  // that the scene is seen in
   Floor floor = {};                   // that the studio has for the view
+  double illuminance = 0;             // of a glTF file's lights in the middle, before its exposure
 };
 
 struct Triangle {

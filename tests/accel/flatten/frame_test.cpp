@@ -32,6 +32,17 @@ TEST(Resolved, RefusesWhatCannotBe) {
   RenderOptions deep;
   deep.depth = 65;
   EXPECT_THROW((void)resolved(deep, {}), Error);
+  for (const PixelRect part :
+       {PixelRect{0, 0, 65, 1}, PixelRect{60, 0, 5, 48}, PixelRect{0, 48, 1, 1}, PixelRect{-1, 0, 2, 2},
+        PixelRect{3, 3, 0, 4}, PixelRect{9, 9, 2147483647, 1}}) {
+    const RenderOptions cropped{.width = 64, .height = 48, .crop = part};
+    EXPECT_THROW((void)resolved(cropped, {}), Error) << in_words(part);
+  }
+  EXPECT_NO_THROW((void)resolved({.width = 64, .height = 48, .crop = PixelRect{0, 0, 64, 48}}, {}));
+  for (const RenderOptions& wrong :
+       {RenderOptions{.width = -1}, RenderOptions{.depth = -2}, RenderOptions{.samples = -7},
+        RenderOptions{.min_weight = std::nan("")}, RenderOptions{.adaptive_target = std::nan("")}})
+    EXPECT_THROW((void)resolved(wrong, {}), Error);
   RenderOptions huge;
   huge.width = huge.height = 65536;
   EXPECT_THROW((void)resolved(huge, {}), Error);

@@ -39,6 +39,8 @@ TEST(InfoCommand, CountsBoundsAndMaterialsWithoutADevice) {
   EXPECT_EQ(info["materials"][0]["primitives"], 2);
   EXPECT_EQ(info["materials"][1]["primitives"], 1);
   EXPECT_NEAR(info["camera"]["vertical_fov_degrees"], 40, 1e-9);
+  EXPECT_EQ(info["camera"]["made_up"], false);
+  EXPECT_EQ(info["lights_made_up"], false);
 }
 
 TEST(InfoCommand, NamesMaterialsAndParts) {
@@ -52,6 +54,9 @@ TEST(InfoCommand, NamesMaterialsAndParts) {
   const std::string text = kdray({"info", scene}, no_device(folder)).out;
   EXPECT_NE(text.find("0: 'brass', 3 primitives"), std::string::npos) << text;
   EXPECT_NE(text.find("'?[31mCube', 2 primitives"), std::string::npos) << text;
+  EXPECT_NE(text.find("camera       none: pictures show it in a studio"), std::string::npos) << text;
+  EXPECT_EQ(text.find("directional"), std::string::npos) << "nobody made these lights: " << text;
+  EXPECT_EQ(info["camera"]["made_up"], true);
 }
 
 TEST(InfoCommand, TextHasTheFirstPartsAndTheNumberOfAll) {

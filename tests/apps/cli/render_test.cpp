@@ -3,6 +3,9 @@
 #include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "apps/cli/program.h"
 #include "apps/cli/scenes.h"
@@ -52,6 +55,33 @@ TEST(RenderCommand, TheSameOptionsInBothFormatsGiveTheSamePicture) {
   EXPECT_FLOAT_EQ(exr.pixels[0].x, 0.1f);
   EXPECT_FLOAT_EQ(exr.pixels[0].z, 0.4f);
   EXPECT_NE(exr.pixels.back().z, 0.4f);
+}
+
+TEST(RenderCommand, APartOfAPictureIsThatPart) {
+  KDRAY_NEED_DEVICE();
+  const Folder folder;
+  const fs::path scene = folder.put("ball.nff", kSphereOnSquare);
+  const auto made = [&](const std::string& name, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"render",      scene,          "--size",     "40x30",
+                                       "-q",          "--samples",    "4",          "-o",
+                                       folder / name, "--background", "transparent"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_TRUE(succeeds(kdray(arguments)));
+    return read(folder / name);
+  };
+  const image::Image whole = made("whole.exr", {}), part = made("part.exr", {"--crop", "15x9+20+8"});
+  ASSERT_EQ(std::pair(part.width, part.height), std::pair(15, 9));
+  ASSERT_EQ(part.alpha.size(), part.pixels.size());
+  for (std::size_t y = 0; y < 9; ++y)
+    for (std::size_t x = 0; x < 15; ++x) {
+      const std::size_t at = y * 15 + x, there = (y + 8) * 40 + x + 20;
+      EXPECT_EQ(part.pixels[at], whole.pixels[there]) << x << ", " << y;
+      EXPECT_EQ(part.alpha[at], whole.alpha[there]) << x << ", " << y;
+    }
+  EXPECT_TRUE(
+      fails_with(kdray({"render", scene, "--size", "40x30", "--crop", "15x9+30+8", "-o", folder / "a.png"}),
+                 2, "the part 15x9+30+8 does not lie within the picture of 40x30"));
+  EXPECT_FALSE(fs::exists(folder / "a.png"));
 }
 
 TEST(RenderCommand, AWidthAloneKeepsTheAspectRatioOfTheScene) {

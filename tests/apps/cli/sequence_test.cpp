@@ -145,6 +145,12 @@ TEST_F(SequenceTest, ATurntableSaysHowToMakeAFilmOfIt) {
   ASSERT_TRUE(succeeds(run));
   EXPECT_TRUE(fs::exists(folder / "ball0004.png") && fs::exists(folder / "ball0005.png"));
   EXPECT_FALSE(fs::exists(folder / "ball0003.png") || fs::exists(folder / "ball0006.png"));
+  const Outcome odd = kdray({"render", "ball.nff", "--turntable", "2", "--size", "9x8", "-o", "100%s%d.png"},
+                            {.folder = folder.path()});
+  ASSERT_TRUE(succeeds(odd));
+  EXPECT_TRUE(fs::exists(folder / "100%s1.png"));
+  EXPECT_NE(odd.err.find("-i '100%%s%d.png' -vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2' -pix_fmt"), std::string::npos)
+      << odd.err;
   EXPECT_NE(
       run.err.find("ffmpeg -framerate 24 -start_number 4 -i 'ball%04d.png' -pix_fmt yuv420p 'ball.mp4'"),
       std::string::npos)
@@ -177,6 +183,37 @@ TEST_F(SequenceTest, NumberedScenesAreFramesToo) {
   EXPECT_TRUE(fs::exists(folder / "s0007.json"));
   EXPECT_TRUE(fails_with(kdray({"render", "s%02d.nff", "--frames", "9..9", "-q"}, {.folder = folder.path()}),
                          1, "s09.nff: no such file"));
+}
+
+// What moves does so in the film: the view that the files lack is made up for all frames together.
+TEST_F(SequenceTest, NumberedScenesWithoutACameraHaveOneView) {
+  KDRAY_NEED_DEVICE();
+  for (int i = 0; i < 3; ++i) {
+    const double x = 4 * i;
+    folder.put(fmt::format("w{}.obj", i),
+               fmt::format("v {0} 0 0\nv {1} 0 0\nv {0} 1 0\nf 1 2 3\n", x, x + 1));
+  }
+  const auto middle = [&](const std::string& name) {  // of the lit pixels' columns
+    const image::Image picture = image::read_picture(folder / name, {});
+    double sum = 0, n = 0;
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+      if (picture.pixels[i].x > 0) sum += static_cast<double>(i % 96), ++n;
+    EXPECT_GT(n, 0) << name;
+    return sum / n;
+  };
+  for (const char* const look : {"plain", "studio"}) {
+    const Outcome run = kdray({"render", "w%d.obj", "--frames", "0..2", "--size", "96x48", "--look", look,
+                               "--samples", "1", "-q", "-o", "f%d.png"},
+                              {.folder = folder.path()});
+    ASSERT_TRUE(succeeds(run));
+    EXPECT_NE(folder.get("f0.png"), folder.get("f1.png"));
+  }
+  ASSERT_TRUE(succeeds(kdray(
+      {"render", "w%d.obj", "--frames", "0..2", "--size", "96x48", "--look", "plain", "-q", "-o", "f%d.png"},
+      {.folder = folder.path()})));
+  const double first = middle("f0.png"), second = middle("f1.png"), third = middle("f2.png");
+  EXPECT_GT(second, first + 8);
+  EXPECT_GT(third, second + 8);
 }
 
 TEST_F(SequenceTest, ProcessesThatShareAFolderMakeAllFrames) {
@@ -248,6 +285,14 @@ TEST_F(SequenceTest, WhatMakesNoSequence) {
   EXPECT_TRUE(fails_with(render({"--share", "a", "--checkpoint", "b"}), 2, "give one of them"));
   EXPECT_TRUE(fails_with(render({"--share", "a", "--resume"}), 2, "leave --resume out"));
   EXPECT_TRUE(fails_with(render({"--frames", "1..2", "--camera-path", "none.json"}), 1, "none.json"));
+  const fs::path through = folder.put("through.json", R"({"kdray_camera_path": 1,
+    "interpolation": "linear", "keys": [{"frame": 0, "from": [0, 0, 1], "at": [0, 0, 0]},
+                                        {"frame": 4, "from": [0, 0, -1], "at": [0, 0, 0]}]})");
+  EXPECT_TRUE(
+      fails_with(render({"--frames", "0..4", "--camera-path", through, "-o", "t%d.png"}), 1, "at frame 2"));
+  EXPECT_FALSE(fs::exists(folder / "t0.png")) << "it is refused before anything is rendered";
+  EXPECT_TRUE(fails_with(render({"--frames", "0..1", "--camera-path", folder.put("a.json", "{}")}), 1,
+                         "a.json: is no camera path"));
 }
 
 TEST(CameraPath, SmoothCurvesPassTheKeysAndReproduceParabolas) {

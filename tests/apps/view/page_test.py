@@ -131,6 +131,19 @@ def touches(b):
     print("ok  touch: orbit, zoom, pan, tap")
 
 
+def looks(b, folder):
+    """A studio in place of the file's own camera and lights, and back."""
+    assert b.ask("document.getElementById('look').value") == "as given"
+    given = check_picture(b, folder, "as given")
+    seen = {given}
+    for look in ("studio", "plain"):
+        choose(b, "look", look)
+        seen.add(check_picture(b, folder, f"look {look}"))
+    assert len(seen) == 2, "plain is as given here, a studio isn't"
+    choose(b, "look", "as given")
+    assert check_picture(b, folder, "as given again") == given
+
+
 def owners(b, folder):
     """Who traced it: in ODPRT the subtrees' queues, the same each time; in PDPRT whoever took the tile."""
     for name, value in (("channel", "queue"), ("queues", "2"), ("mode", "odprt")):
@@ -275,6 +288,7 @@ def main():
                     mouse_and_keys(b, folder)
                     picks(b)
                     touches(b)
+                    looks(b, folder)
                     channels(b, folder)
                     address(b, viewer, folder)
                     reload(b, scene, folder)

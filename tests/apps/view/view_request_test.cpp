@@ -47,6 +47,10 @@ TEST(Command, HasTheNumbersWithAllTheirBits) {
   EXPECT_EQ(command_for(request, settings, "a.nff").find("--look studio"), std::string::npos);
   request.look.reset();
   EXPECT_NE(command_for(request, settings, "a.nff").find(" --look studio --from="), std::string::npos);
+  settings.studio_instead = false;
+  EXPECT_EQ(command_for(request, settings, "a.nff").find("--look"), std::string::npos);
+  request.look = kdray::Look::studio;  // chosen on the page
+  EXPECT_NE(command_for(request, settings, "a.nff").find(" --look studio --from="), std::string::npos);
 }
 
 TEST(EyeRay, GoesThroughThePicturesEdges) {
@@ -92,11 +96,11 @@ TEST(SceneRenderer, MakesTheStudioAtMostOnce) {
   in_plain.look = kdray::Look::plain;
   const SceneRenderer given({plain, {}, studio}, {}), making({plain, {}}, in_plain);
   EXPECT_EQ(&given.scene().prepared(), &studio.prepared()) << "what is there is not made again";
-  EXPECT_EQ(&given.scene(kdray::Look::plain).prepared(), &plain.prepared());
+  EXPECT_EQ(&given.scene({kdray::Look::plain}).prepared(), &plain.prepared());
   EXPECT_EQ(&making.scene().prepared(), &plain.prepared());
-  const PreparedScene& made = making.scene(kdray::Look::studio);
+  const PreparedScene& made = making.scene({kdray::Look::studio});
   EXPECT_TRUE(made.settings().framing.studio);
-  EXPECT_EQ(&made, &making.scene(kdray::Look::studio));
+  EXPECT_EQ(&made, &making.scene({kdray::Look::studio}));
 }
 
 TEST(SceneMessage, AWidthAloneIsASizeOfTheScenesAspectRatio) {

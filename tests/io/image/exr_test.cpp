@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdint>
 #include <cstring>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "pictures.h"
 #include "support/errors.h"
@@ -49,6 +53,25 @@ TEST(Exr, CarriesWhatTheNumbersOfAChannelAreCalled) {
   EXPECT_NE(bytes.find(attribute), std::string::npos);
   EXPECT_EQ(bytes.find("kdray/Z"), std::string::npos);
   EXPECT_TRUE(same_bits(decode_exr(bytes, "a.exr"), image));
+}
+
+// As compositing programs read it: the data window within the display window.
+TEST(Exr, APartOfAPictureSaysWhereItLies) {
+  Image part = noise(37, 53, 5);
+  part.x = 200, part.y = 91, part.whole_width = 640, part.whole_height = 480;
+  const std::string bytes = encode_exr(part, std::vector<Channel>{{"depth", std::vector<float>(37 * 53, 2)}});
+  const auto window = [&bytes](const std::string& name) {
+    const std::string entry = name + std::string("\0box2i\0\x10\0\0\0", 11);
+    std::array<std::int32_t, 4> corners{};
+    const std::size_t at = bytes.find(entry);
+    EXPECT_NE(at, std::string::npos) << name;
+    if (at != std::string::npos)
+      std::memcpy(corners.data(), bytes.data() + at + entry.size(), sizeof corners);
+    return corners;
+  };
+  EXPECT_EQ(window("dataWindow"), (std::array{200, 91, 236, 143}));
+  EXPECT_EQ(window("displayWindow"), (std::array{0, 0, 639, 479}));
+  EXPECT_TRUE(same_bits(decode_exr(bytes, "a.exr"), part));
 }
 
 TEST(Exr, EveryTruncationIsRefused) {

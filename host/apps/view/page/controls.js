@@ -28,7 +28,8 @@ export class Controls {
     this.byId('depth').value = scene.depth;
     this.byId('samples').value = String(scene.samples);
     if (this.byId('samples').selectedIndex < 0) this.byId('samples').value = '0';
-    this.byId('look').value = scene.look;
+    this.look = this.byId('look').value = scene.look;
+    this.byId('look-given').hidden = scene.look !== 'as given';
     this.byId('headlight').value = Math.round(scene.headlight * 10);
     this.showValues();
   }
@@ -57,7 +58,7 @@ export class Controls {
   values() {
     const text = (id) => this.byId(id).value;
     return {
-      channel: text('channel'), look: text('look'), mode: text('mode'), traversal: text('traversal'),
+      channel: text('channel'), look: text('look') === this.look ? null : text('look'), mode: text('mode'), traversal: text('traversal'),
       queues: Number(text('queues')), depth: Number(text('depth')),
       samples: text('samples') === 'adaptive' ? 'adaptive' : Number(text('samples')),
       weight: weightOf(Number(text('weight'))), headlight: Number(text('headlight')) / 10,
