@@ -181,6 +181,7 @@ class Scene:
         channels: Sequence[str],
         progress: Callable[[float], None] | None,
         look: str,
+        crop: Sequence[int] | None,
     ) -> tuple[Any, ...]: ...
 
 def write_picture(
