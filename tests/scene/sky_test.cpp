@@ -183,6 +183,21 @@ TEST(SkyPicture, ExrAsItIsButForWhatIsNoLight) {
   EXPECT_SAYS(warnings[0], "p: 3 values are below 0, infinite or no numbers");
 }
 
+TEST(SkyPicture, WhatIsNotTwiceAsWideAsHighIsToldOf) {
+  const auto warnings_of = [](int width, int height) {
+    image::Image image{width, height, {}};
+    image.pixels.assign(static_cast<std::size_t>(width * height), vec3(1));
+    std::vector<std::string> warnings;
+    decode_sky_picture(image::encode_exr(image, {}), "p", warnings);
+    return warnings;
+  };
+  EXPECT_TRUE(warnings_of(40, 20).empty());
+  EXPECT_TRUE(warnings_of(41, 20).empty());
+  EXPECT_TRUE(warnings_of(1, 8).empty()) << "colours by height";
+  ASSERT_EQ(warnings_of(40, 40).size(), 1u);
+  EXPECT_SAYS(warnings_of(40, 40)[0], "p: is 40x40; a picture all around is twice as wide as high");
+}
+
 // One that says that it is large is refused before it is read.
 TEST(SkyPicture, ExrOfTooManyPixels) {
   image::Image image;

@@ -210,6 +210,8 @@ FrameMaker::FrameMaker(RenderArgs& o) {
   shown_ = in_look(scene_->scene(), o.view);
   seen_ = seen_by(o.view.view, *shown_, o);
   check_transparent(o, seen_->settings());
+  if (o.view.view.focus && !o.quiet && leads() && !(seen_->settings().camera->aperture > 0))
+    say("--focus has no effect: there is no lens; --aperture D puts one in");
   renderer_ = api::make_renderer(*seen_, scene_->device(), o.hooks);
 }
 

@@ -1,10 +1,13 @@
 #include "scene/textures/sky.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 
 #include "base/error.h"
 #include "base/local_space.h"
@@ -266,6 +269,13 @@ std::shared_ptr<const SkyPicture> decode_sky_picture(std::string_view bytes, con
   } else {
     throw input_error(name, 0, "is neither EXR, Radiance HDR, PNG nor JPEG", "convert it to one of these");
   }
+  constexpr std::uint32_t kSmall = 16;  // where it matters little: a few pixels of colours
+  const std::int64_t off = std::int64_t{sky.width} - 2 * std::int64_t{sky.height};
+  if (sky.height >= kSmall && std::abs(off) > sky.height / 10)
+    warnings.push_back(
+        fmt::format("{}: is {}x{}; a picture all around is twice as wide as high, so that this "
+                    "one is stretched",
+                    name, sky.width, sky.height));
   sky.brightest = sky.rgb.empty() ? 0 : *std::max_element(sky.rgb.begin(), sky.rgb.end());
   return std::make_shared<const SkyPicture>(std::move(sky));
 }
