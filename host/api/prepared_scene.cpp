@@ -59,6 +59,11 @@ const std::vector<std::string>& PreparedScene::warnings() const {
 PreparedScene PreparedScene::seen(const View& view, int width, int height) const {
   return PreparedScene(prepare::seen(*prepared_, view_of(view), aspect_of(settings(), width, height)));
 }
+PreparedScene PreparedScene::seen_after(const scene::Scene& first, const View& view, int width,
+                                        int height) const {
+  return PreparedScene(
+      prepare::seen(*prepared_, view_of(view), aspect_of(settings(), width, height), &first));
+}
 PreparedScene PreparedScene::in_studio(bool instead) const {
   return PreparedScene(prepare::in_studio(*prepared_, instead));
 }

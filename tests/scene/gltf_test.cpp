@@ -8,6 +8,7 @@
 #include "scene/import/files.h"
 #include "scene/import/load.h"
 #include "scene/model/check_scene.h"
+#include "scene/model/frame.h"
 #include "scene/model/instances.h"
 #include "scene/model/tangents.h"
 #include "scene/pictures.h"
@@ -475,10 +476,12 @@ TEST(Gltf, ReadsAndExposesLights) {
   EXPECT_NEAR(s.lights[0].color.y / s.lights[0].color.x, 0.5, 1e-6);
   // A film's frames have one exposure, whatever moves in them.
   EXPECT_NEAR(s.framing.illuminance, 50000 + 801.0 / 100, 0.1);
-  LoadOptions of_film;
-  of_film.framed = Framed{{{-9, -9, -9}, {9, 9, 90}}, 2 * s.framing.illuminance};
-  const Scene darker = read_gltf(sample.text(), "a.gltf", of_film);
-  EXPECT_EQ(darker.lights[0].color, s.lights[0].color / 2.0f);
+  Scene first = s, further = s;
+  first.framing.illuminance *= 2;
+  set_view(further, {.headlight = 0.5}, 1, &first);
+  ASSERT_EQ(further.lights.size(), 4u);
+  EXPECT_EQ(further.lights[0].color, s.lights[0].color / 2.0f);
+  EXPECT_EQ(further.lights[3].color, vec3(0.5f)) << "the headlight is as bright as it was asked for";
   sample.json["nodes"][1]["extensions"]["KHR_lights_punctual"]["light"] = 3;
   EXPECT_SAYS(refused(sample), "/nodes/1/extensions/KHR_lights_punctual/light: there is no such light");
 }

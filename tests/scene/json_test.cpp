@@ -132,7 +132,8 @@ TEST(Json, IncludesMeshesAndPlacesThem) {
 }
 
 TEST(Json, MirrorsKeepFrontsAndSkewsKeepNormalsUpright) {
-  for (const char* const scale : {"[-3, 1, 1]", "[-3e-200, 1e-200, 1e-200]", "[-3e200, 1e200, 1e200]"}) {
+  for (const char* const scale : {"[-3, 1, 1]", "[-3e-200, 1e-200, 1e-200]", "[-3e200, 1e200, 1e200]",
+                                  "[-1e170, 1, 1]", "[-1, 1e-170, 1e100]"}) {
     SCOPED_TRACE(scale);
     const Scene s = read(fmt::format(R"({{"objects": [
         {{"type": "triangles", "vertices": [[0, 0, 0], [1, 0, 1], [0, 1, 0]], "faces": [[0, 1, 2]],

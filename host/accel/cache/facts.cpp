@@ -67,14 +67,15 @@ void get(const Json& from, std::vector<scene::Camera>& cameras) {
 
 Json of(const scene::Framing& framing) {
   const auto& [camera, lights, box, studio, floor, illuminance] = framing;
-  static_cast<void>(illuminance);                       // the lights' colours have it
   static_cast<void>(studio), static_cast<void>(floor);  // of scenes as they are seen, which are kept nowhere
-  return {camera, lights, box.empty() ? Json() : Json{of(box.lo), of(box.hi)}};  // infinities are no numbers
+  const Json shown = box.empty() ? Json() : Json{of(box.lo), of(box.hi)};  // infinities are no numbers
+  return {camera, lights, shown, illuminance};
 }
 
 void get(const Json& from, scene::Framing& framing) {
   from.at(0).get_to(framing.camera);
   from.at(1).get_to(framing.lights);
+  from.at(3).get_to(framing.illuminance);
   if (from.at(2).is_null()) return;
   get(from.at(2).at(0), framing.box.lo);
   get(from.at(2).at(1), framing.box.hi);

@@ -32,9 +32,9 @@ void keep_holes(Prepared& white) {
 }  // namespace
 
 // The sky is the scene's own, as it lies packed there, or none, or one that the view has brought.
-Prepared seen(const Prepared& prepared, const scene::View& view, double aspect) {
+Prepared seen(const Prepared& prepared, const scene::View& view, double aspect, const scene::Scene* first) {
   Prepared changed = prepared;
-  scene::set_view(changed.settings, view, aspect);
+  scene::set_view(changed.settings, view, aspect, first);
   if (prepared.settings.sky.kind == scene::SkyKind::none ||
       changed.settings.sky.kind == scene::SkyKind::none) {
     changed.flat.sky = {}, changed.flat.sky_colors = {};

@@ -11,8 +11,9 @@
 namespace kdray::prepare {
 
 // Returns the scene before another camera and background. `aspect`: the picture's width divided by its
-// height.
-Prepared seen(const Prepared& prepared, const scene::View& view, double aspect);
+// height. `first`: of a film's frames the first one, seen by the same view (scene::set_view).
+Prepared seen(const Prepared& prepared, const scene::View& view, double aspect,
+              const scene::Scene* first = nullptr);
 
 // Returns the scene in a studio (studio.cpp), as seen() shows it from then on; where its file has a camera or
 // lights, `instead` of these, or else the scene itself.

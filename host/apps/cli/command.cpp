@@ -49,10 +49,13 @@ std::vector<std::string> names_known_to(const CLI::App& command) {
 // CLI11 would only call it unexpected, or hide it behind another argument that is missing.
 void check_unknown(const CLI::App& app) {
   const CLI::App& command = innermost(app);
+  bool may_be_option = true;  // behind "--" nothing is
   for (const std::string& word : command.remaining()) {
-    const bool is_option = word.starts_with("-") && word != "-";
+    if (word == "--") may_be_option = false;
+    const bool is_option = may_be_option && word.starts_with("-") && word != "-";
+
     if (!is_option && command.get_subcommands({}).empty()) continue;
-    if (word == "--") continue;  // behind it, nothing is an option
+
     const std::string name = word.substr(0, word.find('='));
     throw Error(ErrorCode::usage,
                 fmt::format("there is no {} '{}'; {}see '{} --help'", is_option ? "option" : "command", name,

@@ -201,7 +201,7 @@ std::string report_as_text(const Json& r, std::size_t n_parts) {
   // What is made up for the plain look is of no interest where pictures are of a studio.
   const bool has_camera = r["camera"].is_object() && !r["camera"]["made_up"],
              has_lights = !r["lights_made_up"];
-  const bool in_studio = !has_camera && !has_lights;
+  const bool in_studio = !has_camera && !has_lights && !bounds.is_null();
   const char* const none = in_studio ? "none: pictures show it in a studio" : "none: made up, ";
   text += line("camera", (has_camera ? "" : none) + (in_studio ? "" : camera_text(r["camera"])));
   text += line("background", background_text(r["background"]));

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "accel/flatten/frame.h"
 #include "apps/cli/memory.h"
 #include "apps/cli/output.h"
 #include "apps/cli/progress.h"
@@ -66,10 +67,9 @@ void tell_of_options_without_effect(const RenderArgs& o) {
 
 // The size is resolved as the renderer will do it (RenderOptions::width).
 void check_memory(const RenderArgs& o, scene::RenderSettings asked) {
-  const RenderOptions& render = o.render;
-  scene::set_size(asked, render.width, render.height);
-  PictureNeeds picture{.width = static_cast<std::uint64_t>(asked.width.value_or(scene::kDefaultSide)),
-                       .height = static_cast<std::uint64_t>(asked.height.value_or(scene::kDefaultSide))};
+  const RenderOptions& render = flatten::resolved(o.render, asked);  // refuses a part that isn't in it
+  PictureNeeds picture{.width = static_cast<std::uint64_t>(render.width),
+                       .height = static_cast<std::uint64_t>(render.height)};
   if (render.crop) {
     picture.width = static_cast<std::uint64_t>(render.crop->width);
     picture.height = static_cast<std::uint64_t>(render.crop->height);
@@ -181,6 +181,16 @@ PreparedScene seen_by(View view, const PreparedScene& shown, const RenderArgs& o
   return in_studio || o.view.any || view.from ? shown.seen(view, o.render.width, o.render.height) : shown;
 }
 
+// As a further frame of a film.
+PreparedScene seen_after(const FrameMaker::First& first, const PreparedScene& shown, const RenderArgs& o) {
+  View view = o.view.view;
+  if (o.view.transparent && shown.settings().framing.studio) view.background = {0, 0, 0};
+  const scene::Framing& framing = shown.settings().framing;
+  if (!framing.camera && !framing.lights && framing.illuminance == 0 && !view.side)
+    return seen_by(view, shown, o);
+  return shown.seen_after(first(), view, o.render.width, o.render.height);
+}
+
 // No rank knows the shape of a scene that is held in shares, by which a studio is furnished.
 void take_plain_look(RenderArgs& o, const scene::Scene& scene) {
   if (!o.view.look && scene.framing.camera && scene.framing.lights && leads() && !o.quiet)
@@ -190,7 +200,7 @@ void take_plain_look(RenderArgs& o, const scene::Scene& scene) {
 
 }  // namespace
 
-FrameMaker::FrameMaker(RenderArgs& o) {
+FrameMaker::FrameMaker(RenderArgs& o, const First& first) : is_further_(first != nullptr) {
   if (leads()) check_files(o, files_);
   tell_of_options_without_effect(o);
   o.tree.binary_form = takes_binary_form(o.render.traversal, o.render.precision, o.render.channels);
@@ -208,9 +218,9 @@ FrameMaker::FrameMaker(RenderArgs& o) {
   o.hooks.whole = scene_->whole();
   if (in_shares) take_plain_look(o, scene_->scene().settings());
   shown_ = in_look(scene_->scene(), o.view);
-  seen_ = seen_by(o.view.view, *shown_, o);
+  seen_ = first ? seen_after(first, *shown_, o) : seen_by(o.view.view, *shown_, o);
   check_transparent(o, seen_->settings());
-  if (o.view.view.focus && !o.quiet && leads() && !(seen_->settings().camera->aperture > 0))
+  if (o.view.view.focus && !is_further_ && !o.quiet && leads() && !(seen_->settings().camera->aperture > 0))
     say("--focus has no effect: there is no lens; --aperture D puts one in");
   renderer_ = api::make_renderer(*seen_, scene_->device(), o.hooks);
 }
@@ -250,7 +260,7 @@ void FrameMaker::make(RenderArgs& o) {
   const image::Written written =
       write(std::move(picture), std::move(alpha), seen_->settings().names.get(), o);
   figures.seconds.write = step.seconds();
-  if (is_first_ && !o.quiet) tell_of_view(*seen_, o.view);
+  if (is_first_ && !is_further_ && !o.quiet) tell_of_view(*seen_, o.view);
   if (is_first_) {
     scene_->keep();
     scene_->add_to(figures.seconds);

@@ -5,6 +5,7 @@
 //         not at all, the statistics after it.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -44,8 +45,14 @@ struct RenderArgs {
 // A scene on its device, ready for frames.
 class FrameMaker {
  public:
-  // `o` has the arguments of the first frame.
-  explicit FrameMaker(RenderArgs& o);
+  // Returns a film's first frame as it is seen; called where the scene lacks what was made up for that.
+  using First = std::function<const scene::Scene&()>;
+
+  // `o` has the arguments of the first frame that it makes. `first`: none where that is the film's, or no
+  // film has several scenes.
+  explicit FrameMaker(RenderArgs& o, const First& first = {});
+
+  const PreparedScene& seen() const { return *seen_; }
 
   // Has the frames from the next one on seen after so many turns about the scene (Turntable).
   void turn(const RenderArgs& o, double turns);
@@ -65,6 +72,7 @@ class FrameMaker {
   std::optional<Renderer> renderer_;
   std::optional<Turntable> turntable_;
   bool is_first_ = true, has_odd_side_ = false;
+  bool is_further_ = false;  // it makes further frames of a film of several scenes
 };
 
 }  // namespace kdray::cli

@@ -63,7 +63,7 @@ void add_picture_options(CLI::App& app, RenderOptions& o) {
 void add_crop_option(CLI::App& app, RenderOptions& o) {
   add_text(app, "--crop", "WxH+X+Y",
            "Render just this part of the picture, X and Y pixels from its top left: with the pixels that the "
-           "whole one has there",
+           "whole one has there, but for adaptive sampling",
            [&o](const std::string& text) { o.crop = parse_crop("--crop", text); })
       ->group("Picture");
 }

@@ -5,7 +5,6 @@
 
 #include <cctype>
 #include <chrono>
-#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -18,11 +17,10 @@
 #include "accel/flatten/frame.h"
 #include "apps/cli/camera_path.h"
 #include "apps/cli/output.h"
-#include "apps/cli/ranks.h"
 #include "base/error.h"
 #include "base/hash.h"
 #include "engine/checkpoint/leases.h"
-#include "scene/import/load.h"
+#include "scene/model/scene.h"
 
 namespace kdray::cli {
 
@@ -99,6 +97,7 @@ std::string settings_of(const RenderArgs& o) {
     text += fmt::format("{} {}\n", name, value);
   };
   add("scene", fs::path(o.scene.file).filename().string());
+  if (is_numbered(o) || o.checkpoint.fps) add("--frames from", fmt::format("{}", o.checkpoint.frames->first));
   add("--size", fmt::format("{}x{}", r.width, r.height));
   if (r.crop) add("--crop", flatten::in_words(*r.crop));
   add("--samples",
@@ -126,9 +125,6 @@ std::string settings_of(const RenderArgs& o) {
   add("--focus", in_text(v.focus));
   add("--background", o.view.transparent ? "transparent" : in_text(v.background));
   add("--headlight", fmt::format("{}", v.headlight));
-  if (const auto& framed = load.framed)
-    add("the box that is shown", fmt::format("{} to {}, light {}", fmt::join(framed->box.least, ","),
-                                             fmt::join(framed->box.greatest, ","), framed->illuminance));
   return text;
 }
 
@@ -182,40 +178,12 @@ RenderArgs args_of(const RenderArgs& o, const std::optional<CameraPath>& path, i
   return frame;
 }
 
-// Returns what all frames are framed for, so that what moves does so in the film, and light that is fixed
-// stays as bright: the box of what is shown in the first frame, the last and three between. Nothing where
-// frames are of one scene, or their files have cameras and lights.
-std::optional<Framed> framed_of(const RenderArgs& o, const std::optional<CameraPath>& path) {
-  constexpr int kLooks = 4;
-  const FrameRange range = *o.checkpoint.frames;
-  if (!is_numbered(o) && !o.checkpoint.fps) return std::nullopt;
-  DBox box;
-  double illuminance = 0;
-  int last = range.first - 1;
-  for (int i = 0; i <= kLooks; ++i) {
-    const auto number = static_cast<int>(range.first + (std::int64_t{range.last} - range.first) * i / kLooks);
-    if (number == last) continue;
-    last = number;
-    RenderArgs frame = args_of(o, path, number);
-    frame.quiet = true;
-    frame.tree.binary_form = takes_binary_form(o.render.traversal, o.render.precision, o.render.channels);
-    if (i == 0 && holds_shares(frame)) return std::nullopt;
-    const scene::Scene seen = scene::load(frame.scene.file, frame.scene.load);
-    if (i == 0) illuminance = seen.framing.illuminance;
-    if (i == 0 && !seen.framing.camera && !seen.framing.lights && illuminance == 0) return std::nullopt;
-    if (!seen.framing.box.empty()) box.grow(seen.framing.box.lo), box.grow(seen.framing.box.hi);
-  }
-  if (box.empty()) return std::nullopt;
-  return Framed{{{box.lo.x, box.lo.y, box.lo.z}, {box.hi.x, box.hi.y, box.hi.z}}, illuminance};
-}
-
 class Sequence {
  public:
   explicit Sequence(const RenderArgs& o) : o_(o), range_(*o.checkpoint.frames) {
-    if (!o_.checkpoint.camera_path.empty()) path_.emplace(o_.checkpoint.camera_path);
+    if (!o.checkpoint.camera_path.empty()) path_.emplace(o.checkpoint.camera_path);
     for (int number = range_.first; path_ && number <= range_.last; ++number)
       static_cast<void>(path_->at(number));  // refuses what is no camera
-    o_.scene.load.framed = framed_of(o_, path_);
   }
 
   int render() {
@@ -231,25 +199,39 @@ class Sequence {
 
  private:
   void make(int number);
+  const scene::Scene& first();
   void render_shared();
   void make_what_is_missing();
 
-  RenderArgs o_;
+  const RenderArgs& o_;
   FrameRange range_;
   std::optional<CameraPath> path_;
   std::optional<FrameMaker> maker_;
-  SceneInput opened_;  // what the maker has
+  SceneInput opened_;                  // what the maker has
+  std::optional<scene::Scene> first_;  // of several scenes: what the others take over from
 };
 
 void Sequence::make(int number) {
   RenderArgs frame = args_of(o_, path_, number);
   if (!maker_ || opened_.file != frame.scene.file || !(opened_.load == frame.scene.load)) {
     maker_.reset();
-    maker_.emplace(frame);
+    const bool is_further = number != range_.first && (is_numbered(o_) || o_.checkpoint.fps);
+    const FrameMaker::First first = [this]() -> const scene::Scene& { return this->first(); };
+    maker_.emplace(frame, is_further ? first : FrameMaker::First());
     opened_ = frame.scene;
+    if (number == range_.first) first_ = maker_->seen().settings();
   }
   if (o_.checkpoint.turntable > 0) maker_->turn(frame, static_cast<double>(number) / o_.checkpoint.turntable);
   maker_->make(frame);
+}
+
+const scene::Scene& Sequence::first() {
+  if (!first_) {  // another process has made it, or a run before
+    RenderArgs frame = args_of(o_, path_, range_.first);
+    frame.quiet = true;
+    first_ = FrameMaker(frame).seen().settings();
+  }
+  return *first_;
 }
 
 void Sequence::render_shared() {

@@ -37,7 +37,7 @@ std::string samples_line(const Json& stats);
 // empty.
 std::string glass_line(const Json& stats);
 
-// `is_first`: of a process' frames.
+// `is_first`: of the frames of a scene.
 void print_render_summary(const Json& stats, std::size_t nan_values, bool verbose, bool is_first);
 void print_trace_summary(const Json& stats, bool verbose);
 

@@ -122,24 +122,20 @@ std::optional<std::span<const layout::u32>> Queue::more(Tiles& tiles, const wave
   // The launch that is running takes as much as it can of what there is. The one to be queued is to find all
   // it can take, and more, when that is known: a slice that runs dry traces its last rays in batches that
   // aren't full.
-  const std::size_t most = (measured ? 2 : 1) * tiles_of_launch() + n_slices_ - 1;
-  return tiles.take(number_, {.most = std::min(most, tiles_in_time(progress, work.left_after)),
-                              .least = shortest_launch(progress),
-                              .ahead = ahead - std::min(ahead, tiles_of_launch())});
+  const std::size_t in_launch = std::min(ahead, tiles_of_launch());
+  std::size_t most = (measured ? 2 : 1) * tiles_of_launch() + n_slices_ - 1;
+  if (work.left_after < frame::kForever) {
+    const std::size_t in_time =
+        tiles_in_time(work.left_after, since_begin_.seconds(), progress.front, n_slices_);
+    most = std::min(most, in_time - std::min(in_time, in_launch));
+  }
+  return tiles.take(number_, {.most = most, .least = shortest_launch(progress), .ahead = ahead - in_launch});
 }
 
 // In tiles, by the time that they have taken so far.
 std::size_t Queue::shortest_launch(const wavefront::Progress& progress) const {
   const double busy = wavefront_.busy_seconds() - busy_before_;
   return busy > 0 ? static_cast<std::size_t>(kShortestSeconds / busy * progress.taken) + 1 : 1;
-}
-
-// As many as there were up to now in the time, but one for each slice at least.
-std::size_t Queue::tiles_in_time(const wavefront::Progress& progress, double seconds) const {
-  if (seconds >= frame::kForever) return std::numeric_limits<std::size_t>::max();
-  const double elapsed = since_begin_.seconds(), left = std::max(seconds - elapsed, 0.0);
-  const double n = elapsed > 0 ? static_cast<double>(progress.taken) / elapsed * left : 0;
-  return std::max<std::size_t>(static_cast<std::size_t>(n), n_slices_);
 }
 
 std::size_t Queue::tiles_of_launch() const {

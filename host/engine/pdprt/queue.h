@@ -57,7 +57,7 @@ class Queue {
   std::optional<std::span<const layout::u32>> more(Tiles& tiles, const wavefront::Progress& progress,
                                                    const Work& work, Shared& shared);
   std::size_t tiles_of_launch() const;
-  std::size_t tiles_in_time(const wavefront::Progress& progress, double seconds) const;
+
   std::size_t shortest_launch(const wavefront::Progress& progress) const;
   void deliver(std::span<const layout::u32> tiles, const Work& work, Shared& shared);
   void note_costs(std::span<const layout::u32> tiles, Shared& shared);

@@ -33,6 +33,13 @@ std::uint32_t choose_tile_side(std::uint32_t width, std::uint32_t height, std::u
   return side;
 }
 
+std::size_t tiles_in_time(double interval, double elapsed, std::size_t n_done, std::size_t n_slices) {
+  constexpr double kMost = 0x1p40;
+  const double left = std::max(interval - elapsed, 0.0);
+  const double n = elapsed > 0 ? std::min(static_cast<double>(n_done) / elapsed * left, kMost) : 0;
+  return std::max(static_cast<std::size_t>(n), n_slices);
+}
+
 namespace {
 
 // A queue takes from the bag one in so many of its share of what is left: the last to come find so little

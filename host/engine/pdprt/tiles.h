@@ -41,6 +41,10 @@ constexpr std::uint32_t kLargestTile = 32;
 std::uint32_t choose_tile_side(std::uint32_t width, std::uint32_t height, std::uint32_t n_units,
                                const std::optional<TileCost>& measured, std::uint32_t largest = kLargestTile);
 
+// How many tiles a queue may have in work that are to be done `interval` seconds after the list's begin: as
+// many as were done up to now in the time that is left, but one for each slice at least.
+std::size_t tiles_in_time(double interval, double elapsed, std::size_t n_done, std::size_t n_slices);
+
 // What a queue wants from the bag: a part of what is left there, so that all come to their end together, but
 // no more than `most` and no less than `least`; all of that together with the `ahead` that it has.
 struct Wanted {

@@ -57,6 +57,9 @@ class PreparedScene {
   // The same scene seen otherwise, in a picture of this size (0: what the scene asks for, or square). Throws
   // ErrorCode::usage for a camera that isn't there, and for directions that make no view.
   PreparedScene seen(const View& view, int width = 0, int height = 0) const;
+  // The same as a further frame of a film: what was made up for its first frame (settings() of that, seen by
+  // the same view) is taken over in place of a camera, lights and a glTF file's exposure of its own.
+  PreparedScene seen_after(const scene::Scene& first, const View& view, int width = 0, int height = 0) const;
   // The same scene in a studio, where its file has neither camera nor lights, or `instead` of these: from
   // then on seen() chooses a camera that shows it well, soft lights that follow it, a backdrop and a floor
   // (docs/scenes.md), as far as the view leaves them open.

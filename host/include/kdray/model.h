@@ -20,11 +20,6 @@ namespace kdray {
 using Vec3 = std::array<double, 3>;
 using Color = std::array<float, 3>;
 
-struct Extent {
-  Vec3 least, greatest;
-  bool operator==(const Extent&) const = default;
-};
-
 // A geometry of a Scene: 0 is the first that was added, or all that was in the file. Never given twice.
 using GeometryId = std::uint32_t;
 inline constexpr GeometryId kNoGeometry = 0xffffffffu;

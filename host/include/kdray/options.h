@@ -32,13 +32,6 @@ enum class Look {
   studio  // PreparedScene::in_studio()
 };
 
-// What a view, lights and an exposure are made up for where the file has none, in place of its own bounds.
-struct Framed {
-  Extent box;
-  double illuminance = 0;  // of a glTF file's lights, that its exposure makes 1; 0: at the box's middle
-  bool operator==(const Framed&) const = default;
-};
-
 // How a scene file is read.
 struct LoadOptions {
   // Triangles without normals get them from the faces around each corner, where the surface turns by no more
@@ -55,7 +48,6 @@ struct LoadOptions {
   // A folder below which a scene may name files (pictures, buffers) that are not beside it or below; empty:
   // none.
   std::filesystem::path asset_root = {};
-  std::optional<Framed> framed = {};  // the same for all frames of a film
   bool operator==(const LoadOptions&) const = default;
 };
 
@@ -188,8 +180,8 @@ struct RenderOptions {
   // 0: what the scene or its camera asks for, or 1024x1024; where one is given, the other follows from the
   // aspect ratio that these ask for, or 1.
   int width = 0, height = 0;
-  // This part of the picture alone, with the pixels that the whole one has there, bit for bit; with adaptive
-  // sampling those at its edges may get other samples, as their neighbours have a say in it.
+  // This part of the picture alone, with the pixels that the whole one has there, bit for bit. (Adaptive
+  // sampling aims at the error of the part, and takes other samples for it.)
   std::optional<PixelRect> crop = {};
   int depth = 0;           // 0: what the scene asks for, or 5; the eye ray is depth 1
   double min_weight = -1;  // < 0: what the scene asks for, or kDefaultMinWeight; 0: no cut

@@ -57,6 +57,10 @@ struct CommitReport {
   VertexPrecision geometry = VertexPrecision::float32;  // what was asked for; of automatic what came of it
 };
 
+struct Extent {
+  Vec3 least, greatest;
+};
+
 struct GeometryInfo {
   std::string name;
   std::uint32_t mask = 0;

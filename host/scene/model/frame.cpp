@@ -217,11 +217,7 @@ void frame_scene(Scene& scene) {
 
 void frame_scene(Scene& scene, const Framed& framed) {
   const DBox& bounds = framed.bounds;
-  DBox box = bounds;
-  if (const auto& given = scene.load_options.framed)
-    box = box_of(given->box);
-  else if (!scene.camera && !bounds.empty())
-    box = worth_showing(scene, framed);
+  const DBox box = scene.camera || bounds.empty() ? bounds : worth_showing(scene, framed);
   scene.framing = {.camera = !scene.camera,
                    .lights = scene.lights.empty() && !scene.unlit,
                    .box = box,
@@ -275,12 +271,33 @@ void check(const Camera& camera) {
     throw Error(ErrorCode::usage, std::string("the view: ") + fault + "; give other --from, --at or --up");
 }
 
+bool is_made_up(const Scene& scene, const View& view) {
+  return (scene.framing.camera || (view.side && !scene.framing.box.empty())) && !view.camera;
+}
+
+// The lights and all else that was made up with them; or else a glTF file's own lights as bright as they are
+// in the first frame.
+void light_as(const Scene& first, const View& view, Scene& scene) {
+  if (!scene.framing.lights) {
+    const double there = first.framing.illuminance, here = scene.framing.illuminance;
+    if (there > 0 && here > 0)
+      for (Light& light : scene.lights) light.color *= static_cast<float>(here / there);
+    if (view.headlight > 0) scene.lights.push_back(headlight(*scene.camera, view.headlight));
+    return;
+  }
+  scene.lights = first.lights;
+  if (!first.framing.studio) return;
+  scene.framing.studio = first.framing.studio;
+  scene.framing.floor = first.framing.floor;
+  if (!first.framing.studio->own_background && !view.background) scene.sky = first.sky;
+}
+
 }  // namespace
 
 Camera camera_of(const Scene& scene, const View& view, double aspect) {
   Camera camera = view.camera ? numbered_camera(scene, *view.camera) : scene.camera.value_or(Camera{});
   const DBox& box = scene.framing.box;
-  const bool made_up = (scene.framing.camera || (view.side && !box.empty())) && !view.camera;
+  const bool made_up = is_made_up(scene, view);
   if (made_up && !scene.framing.camera)
     camera = {.at = box.center(), .up = nearest_axis(camera.up), .vertical_fov = kFov};
   if (made_up && scene.framing.studio) set_studio_camera(camera, scene.framing, view, aspect);
@@ -301,9 +318,10 @@ Camera camera_of(const Scene& scene, const View& view, double aspect) {
   return camera;
 }
 
-void set_view(Scene& scene, const View& view, double aspect) {
-  scene.camera = camera_of(scene, view, aspect);
+void set_view(Scene& scene, const View& view, double aspect, const Scene* first) {
+  scene.camera = first && is_made_up(scene, view) ? first->camera : camera_of(scene, view, aspect);
   if (view.background) scene.background = *view.background, scene.sky = {};
+  if (first) return light_as(*first, view, scene);
   if (scene.framing.lights) {
     scene.lights.clear();
     scene.framing.studio ? furnish_studio(scene, view) : add_lights(scene);

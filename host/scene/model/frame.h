@@ -86,7 +86,9 @@ struct View {
 Camera camera_of(const Scene& scene, const View& view, double aspect);
 
 // Puts that camera into the scene, with lights for it where they were made up, the headlight and the
-// background. In a studio, also what else belongs to it.
-void set_view(Scene& scene, const View& view, double aspect);
+// background. In a studio, also what else belongs to it. `first`: of a film's frames the first one, seen by
+// the same view: what was made up for it is taken over, so that what moves does so in the film and light that
+// is fixed stays as bright.
+void set_view(Scene& scene, const View& view, double aspect, const Scene* first = nullptr);
 
 }  // namespace kdray::scene

@@ -60,15 +60,16 @@ void turn_round(Scene& scene) {
 void apply_transform(const dmat4& m, Scene& scene) {
   const dmat3 linear(m);
   for (dvec3& p : scene.vertices) p = transform_point(m, p);
-  // At a size of about 1, so that no product leaves double's range.
-  const double size =
-      std::max({largest_component(linear[0]), largest_component(linear[1]), largest_component(linear[2])});
-  const dmat3 unit = linear * scale_to_one(size);
+  // Columns of a length of about 1, so that no product leaves double's range.
+  const dvec3 to_one(scale_to_one(largest_component(linear[0])), scale_to_one(largest_component(linear[1])),
+                     scale_to_one(largest_component(linear[2])));
+  const dmat3 unit(linear[0] * to_one[0], linear[1] * to_one[1], linear[2] * to_one[2]);
   if (!scene.normals.empty()) {
     const dmat3 of_normals = glm::transpose(glm::inverse(unit));
-    for (vec3& n : scene.normals) n = vec3(glm::normalize(of_normals * dvec3(n)));
+    const double most = largest_component(to_one);
+    for (vec3& n : scene.normals) n = vec3(safe_normalize(of_normals * (to_one / most * dvec3(n))));
   }
-  move_tangents(unit, scene.texturing.tangents);
+  move_tangents(linear, scene.texturing.tangents);
   if (glm::determinant(unit) < 0) turn_round(scene);
   primitives::for_each_shape([&](auto kind) {
     auto& shapes = decltype(kind)::of(scene);

@@ -105,11 +105,6 @@ struct Studio {
   std::optional<dvec3> open_to = {};  // of one that is open on one side: the way out
 };
 
-inline DBox box_of(const Extent& extent) {
-  const auto& [lo, hi] = extent;
-  return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
-}
-
 // What frame_scene() made up where the file has nothing, so that another view can be made up in the same way
 // (frame.h).
 struct Framing {

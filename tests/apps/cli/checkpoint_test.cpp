@@ -103,7 +103,7 @@ TEST_F(CheckpointTest, AnotherSceneOrOtherSettingsAreRefused) {
   EXPECT_TRUE(fails_with(go_on({"--samples", "adaptive"}), 1, "--samples adaptive"));
   EXPECT_TRUE(fails_with(go_on({"--depth", "2"}), 1, "--depth 2"));
   EXPECT_TRUE(fails_with(go_on({"--from", "1,2,9"}), 1, "another view"));
-  EXPECT_TRUE(fails_with(go_on({"--crop", "100x70+3+4"}), 1, "--size 200x150 "));
+  EXPECT_TRUE(fails_with(go_on({"--crop", "100x70+3+4"}), 1, "--size 200x150 --crop 100x70+3+4 "));
   EXPECT_TRUE(fails_with(go_on({"--background", "1,0,0"}), 1, "another view or other settings"));
   EXPECT_TRUE(fails_with(go_on({"--tile", "16x8"}), 2, "leave --tile out"));
   folder.put("ball.nff", std::string(kSphereOnSquare) + "s 0 0 1 0.1\n");

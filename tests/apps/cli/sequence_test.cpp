@@ -1,12 +1,16 @@
 // Sequences and shared pictures: each frame has the bytes of the picture that the same camera or scene gives
 // by itself, whoever made it.
 #include <fmt/format.h>
-
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
-#include <algorithm>
 
+#include <algorithm>
+#include <array>
 #include <cstring>
 #include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "apps/cli/camera_path.h"
 #include "apps/cli/program.h"
@@ -185,35 +189,73 @@ TEST_F(SequenceTest, NumberedScenesAreFramesToo) {
                          1, "s09.nff: no such file"));
 }
 
-// What moves does so in the film: the view that the files lack is made up for all frames together.
-TEST_F(SequenceTest, NumberedScenesWithoutACameraHaveOneView) {
+// A pyramid that stands on z, which is found out by its base, and flies up and to the right.
+std::string flying(int frame) {
+  const double by = 0.15 * frame;
+  std::string text;
+  for (const auto& [x, y, z] : {std::array{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {0, 0, 1}})
+    text += fmt::format("v {} {} {}\n", x + by, y, z + by);
+  return text + "f 4 3 2 1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
+}
+
+// What moves does so in the film: a view that is made up is that of the first frame.
+TEST_F(SequenceTest, NumberedScenesHaveOneViewThatIsMadeUp) {
   KDRAY_NEED_DEVICE();
-  for (int i = 0; i < 3; ++i) {
-    const double x = 4 * i;
-    folder.put(fmt::format("w{}.obj", i),
-               fmt::format("v {0} 0 0\nv {1} 0 0\nv {0} 1 0\nf 1 2 3\n", x, x + 1));
-  }
-  const auto middle = [&](const std::string& name) {  // of the lit pixels' columns
-    const image::Image picture = image::read_picture(folder / name, {});
-    double sum = 0, n = 0;
-    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
-      if (picture.pixels[i].x > 0) sum += static_cast<double>(i % 96), ++n;
-    EXPECT_GT(n, 0) << name;
-    return sum / n;
+  const auto own_view = [](int frame) {
+    return fmt::format(R"({{"camera": {{"from": [0, -5, 0], "at": [{0}, 0, 0], "up": [0, 0, 1]}},
+        "lights": [{{"type": "point", "position": [0, -9, 9]}}],
+        "objects": [{{"type": "sphere", "center": [{0}, 0, {0}], "radius": 1}}]}})",
+                       0.15 * frame);
   };
-  for (const char* const look : {"plain", "studio"}) {
-    const Outcome run = kdray({"render", "w%d.obj", "--frames", "0..2", "--size", "96x48", "--look", look,
-                               "--samples", "1", "-q", "-o", "f%d.png"},
-                              {.folder = folder.path()});
-    ASSERT_TRUE(succeeds(run));
-    EXPECT_NE(folder.get("f0.png"), folder.get("f1.png"));
+  for (int i = 0; i < 3; ++i) {
+    folder.put(fmt::format("w{}.obj", i), flying(i));
+    folder.put(fmt::format("j{}.json", i), own_view(i));
   }
-  ASSERT_TRUE(succeeds(kdray(
-      {"render", "w%d.obj", "--frames", "0..2", "--size", "96x48", "--look", "plain", "-q", "-o", "f%d.png"},
-      {.folder = folder.path()})));
-  const double first = middle("f0.png"), second = middle("f1.png"), third = middle("f2.png");
-  EXPECT_GT(second, first + 8);
-  EXPECT_GT(third, second + 8);
+  struct Seen {
+    double column = 0, row = 0, n = 0;
+  };
+  const auto seen = [&](int frame) {
+    const image::Image depth = image::read_picture(folder / fmt::format("f{}.depth.png", frame), {});
+    Seen sum;
+    for (std::size_t i = 0; i < depth.pixels.size(); ++i)
+      if (depth.pixels[i].x > 0)
+        sum.column += static_cast<double>(i % 96), sum.row += static_cast<double>(i / 96), ++sum.n;
+    return Seen{sum.column / sum.n, sum.row / sum.n, sum.n};
+  };
+  const auto film = [&](const std::string& scenes, Arguments more) {
+    Arguments arguments{"render", scenes, "--frames",  "0..2", "--size", "96x72",  "--aov",
+                        "depth",  "-q",   "--samples", "1",    "-o",     "f%d.png"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    ASSERT_TRUE(succeeds(kdray(arguments, {.folder = folder.path()})));
+  };
+  const std::vector<std::pair<std::string, Arguments>> films = {
+      {"w%d.obj", {}},
+      {"w%d.obj", {"--look", "plain", "--up", "z"}},
+      {"w%d.obj", {"--view", "front", "--up", "z"}},
+      {"j%d.json", {"--look", "studio", "--up", "z"}},
+      {"j%d.json", {"--view", "front"}}};
+  for (const auto& [scenes, more] : films) {
+    SCOPED_TRACE(fmt::format("{} {}", scenes, fmt::join(more, " ")));
+    film(scenes, more);
+    for (int frame = 1; frame < 3; ++frame) {
+      const Seen before = seen(frame - 1), now = seen(frame);
+      EXPECT_GT(now.column, before.column + 1) << frame;
+      EXPECT_TRUE(scenes != "w%d.obj" || now.row < before.row - 1) << frame;
+      EXPECT_NEAR(now.n / before.n, 1, 0.25) << frame;
+    }
+  }
+  // Whoever makes a frame finds out about the first one.
+  film("w%d.obj", {"--share", "shared"});
+  const std::string last = folder.get("f2.png");
+  fs::remove(folder / "f2.png");
+  film("w%d.obj", {"--share", "shared"});
+  EXPECT_EQ(folder.get("f2.png"), last);
+  film("w%d.obj", {});
+  EXPECT_EQ(folder.get("f2.png"), last);
+  EXPECT_TRUE(fails_with(kdray({"render", "w%d.obj", "--frames", "1..2", "--size", "96x72", "--aov", "depth",
+                                "-q", "--samples", "1", "--share", "shared", "-o", "f%d.png"},
+                               {.folder = folder.path()}),
+                         1, "--frames from"));
 }
 
 TEST_F(SequenceTest, ProcessesThatShareAFolderMakeAllFrames) {

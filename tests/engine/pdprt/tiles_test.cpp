@@ -194,5 +194,13 @@ TEST(Tiles, ABagEvensOutALopsidedPicture) {
   EXPECT_LE(simulated(Division::bag, 1000, cost), 1625 + 10);
 }
 
+TEST(TilesInTime, AreThoseOfTheTimeThatIsLeftAndOneForEachSlice) {
+  EXPECT_EQ(tiles_in_time(10, 2, 100, 64), 400u);
+  EXPECT_EQ(tiles_in_time(10, 9.9, 100, 64), 64u);
+  EXPECT_EQ(tiles_in_time(10, 0, 0, 64), 64u) << "nothing is known yet";
+  EXPECT_EQ(tiles_in_time(1, 5, 100, 8), 8u) << "the time is over";
+  EXPECT_GE(tiles_in_time(1e300, 1e-300, 1000, 8), std::size_t{1} << 40);
+}
+
 }  // namespace
 }  // namespace kdray::pdprt

@@ -7,7 +7,6 @@
 #include <glm/gtc/quaternion.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,8 +28,7 @@ class Reader {
       : document_(text, path),
         meshes_(document_, scene_, names_),
         pose_(document_, options),
-        at_rest_(!options.time),
-        framed_(options.framed) {}
+        at_rest_(!options.time) {}
 
   Scene read() {
     visited_.assign(document_.entries("nodes").size(), false);
@@ -44,8 +42,8 @@ class Reader {
     meshes_.finish();
     scene_.names =
         names_.finish(scene_.primitive_count(), static_cast<std::uint32_t>(scene_.instances.size()));
-    expose(scene_, framed_);
-    aim_cameras(scene_, framed_);
+    expose(scene_);
+    aim_cameras(scene_);
     if (!scene_.cameras.empty()) scene_.camera = scene_.cameras.front();
     return std::move(scene_);
   }
@@ -241,7 +239,6 @@ class Reader {
   Pose pose_;
   Deformations deformations_{document_, pose_};
   bool at_rest_;
-  std::optional<Framed> framed_;
   struct Used {
     JsonNode mesh;
     std::uint64_t n = 0;  // times

@@ -12,10 +12,6 @@ namespace {
 
 constexpr double kHalfPi = 1.5707963267948966;
 
-DBox shown_box(const Scene& scene, const std::optional<Framed>& framed) {
-  return framed ? box_of(framed->box) : scene.bounds();
-}
-
 // Returns the ratio of a picture's sides; 0 where they make no picture.
 double ratio_or_none(double width, double height) {
   const double ratio = width / height;
@@ -77,15 +73,14 @@ Light read_light(const JsonNode& light, const dmat4& to_world) {
   return out;
 }
 
-void expose(Scene& scene, const std::optional<Framed>& framed) {
-  const DBox box = shown_box(scene, framed);
+void expose(Scene& scene) {
+  const DBox box = scene.bounds();
   const dvec3 middle = box.empty() ? dvec3(0) : box.center();
   // A lamp inside the scene is judged from the distance of the walls, not from its own surface.
   const double size = box.empty() ? 0 : glm::length(box.extent());
   const double nearest = size > 0 ? size / 4 : 1e-6;
   double sum = 0;
   for (const Light& light : scene.lights) sum += illuminance(light, middle, nearest);
-  if (framed && framed->illuminance > 0) sum = framed->illuminance;
   if (!(sum > 0) || !std::isfinite(sum)) return;
   scene.framing.illuminance = sum;
   for (Light& light : scene.lights) {
@@ -95,9 +90,9 @@ void expose(Scene& scene, const std::optional<Framed>& framed) {
   }
 }
 
-void aim_cameras(Scene& scene, const std::optional<Framed>& framed) {
+void aim_cameras(Scene& scene) {
   if (scene.cameras.empty()) return;
-  const DBox box = shown_box(scene, framed);
+  const DBox box = scene.bounds();
   if (box.empty()) return;
   for (Camera& camera : scene.cameras) {
     const dvec3 forward = camera.at - camera.from;
