@@ -185,7 +185,12 @@ class Scene:
     ) -> tuple[Any, ...]: ...
 
 def write_picture(
-    file: str, pixels: NDArray[Any], channels: Sequence[tuple[str, NDArray[Any]]], gamma: float, bits: int
+    file: str,
+    pixels: NDArray[Any],
+    channels: Sequence[tuple[str, NDArray[Any]]],
+    gamma: float,
+    bits: int,
+    within: Sequence[int] | None,
 ) -> list[str]: ...
 def encode_png(arg: NDArray[Any], /) -> bytes: ...
 def devices() -> tuple[Any, ...]: ...

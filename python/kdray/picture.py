@@ -82,14 +82,23 @@ class Picture(np.ndarray[Any, np.dtype[np.float32]]):
     def __reduce__(self) -> Any:
         return Picture, (np.asarray(self), self.channels, self.warnings)
 
-    def save(self, path: str | os.PathLike[str], *, gamma: float | None = None, bits: int = 8) -> list[str]:
+    def save(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        gamma: float | None = None,
+        bits: int = 8,
+        within: tuple[int, int, int, int] | None = None,
+    ) -> list[str]:
         """Writes a .png (sRGB, or v^(1/gamma); 8 or 16 bits) or a .exr (linear, with all channels).
 
-        Returns the files' names: beside a PNG each channel has one of its own. Files are written whole or not at
-        all. Raises InputError where that can't be done.
+        `within` = (x, y, width, height): it is a part of a picture of that size and begins there, as `render`'s crop
+        has it, which an EXR says by its windows. Returns the files' names: beside a PNG each channel has one of its
+        own. Files are written whole or not at all. Raises InputError where that can't be done.
         """
         channels = [(name, np.ascontiguousarray(values)) for name, values in self.channels.items()]
-        return list(_core.write_picture(os.fspath(path), self._pixels(), channels, gamma or 0.0, bits))
+        pixels = self._pixels()
+        return list(_core.write_picture(os.fspath(path), pixels, channels, gamma or 0.0, bits, within))
 
     def _pixels(self) -> npt.NDArray[np.float32]:
         if self.ndim != 3 or self.shape[2] != 3:

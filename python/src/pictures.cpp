@@ -92,6 +92,13 @@ image::Image image_of(const Pixels& pixels) {
   return image;
 }
 
+void place_within(const std::array<int, 4>& within, image::Image& image) {
+  const auto& [x, y, width, height] = within;
+  const bool fits = x >= 0 && y >= 0 && image.width <= width - x && image.height <= height - y;
+  if (!fits) throw Error(ErrorCode::usage, "within: the picture does not lie in that one");
+  image.x = x, image.y = y, image.whole_width = width, image.whole_height = height;
+}
+
 std::vector<image::Channel> channels_of(const std::vector<std::pair<std::string, Values>>& given) {
   std::vector<image::Channel> channels;
   for (const auto& [name, values] : given)
@@ -137,17 +144,20 @@ void add_pictures(nb::module_& module, SceneClass scene) {
   module.def(
       "write_picture",
       [](const std::string& file, const Pixels& pixels,
-         const std::vector<std::pair<std::string, Values>>& channels, double gamma, int bits) {
+         const std::vector<std::pair<std::string, Values>>& channels, double gamma, int bits,
+         const std::optional<std::array<int, 4>>& within) {
         if (bits != 8 && bits != 16) throw Error(ErrorCode::usage, "a PNG has 8 or 16 bits");
         const std::vector<image::Channel> beside = channels_of(channels);
         check_channels(pixels, beside);
         const image::WriteOptions options{{gamma == 0, gamma}, bits};
-        const image::Written written = image::write_picture(file, image_of(pixels), beside, options);
+        image::Image image = image_of(pixels);
+        if (within) place_within(*within, image);
+        const image::Written written = image::write_picture(file, image, beside, options);
         std::vector<std::string> files;
         for (const auto& path : written.files) files.push_back(path.string());
         return files;
       },
-      "file"_a, "pixels"_a, "channels"_a, "gamma"_a, "bits"_a);
+      "file"_a, "pixels"_a, "channels"_a, "gamma"_a, "bits"_a, "within"_a.none());
   module.def("encode_png", [](const Pixels& pixels) {
     const std::string bytes = image::encode_picture(image::PictureFormat::png, image_of(pixels), {}, {});
     return nb::bytes(bytes.data(), bytes.size());

@@ -146,6 +146,22 @@ def test_a_part_has_the_pixels_of_the_whole(lit):
             lit.render(camera, (60, 40), crop=wrong)
 
 
+def test_a_part_says_where_it_lies(lit, tmp_path):
+    part = lit.render(size=(60, 40), samples=1, crop=(21, 9, 30, 20))
+    part.save(tmp_path / "a.exr", within=(21, 9, 60, 40))
+    header = (tmp_path / "a.exr").read_bytes()
+
+    def window(name):
+        at = header.index(name + b"\0box2i\0") + len(name) + 11
+        return np.frombuffer(header, "<i4", 4, at).tolist()
+
+    assert window(b"dataWindow") == [21, 9, 50, 28] and window(b"displayWindow") == [0, 0, 59, 39]
+    for wrong in [(31, 9, 60, 40), (-1, 0, 60, 40), (0, 0, 29, 40), (0, 0, 2**31 - 1, 3)]:
+        with pytest.raises(kdray.UsageError, match="within"):
+            part.save(tmp_path / "b.exr", within=wrong)
+    assert not (tmp_path / "b.exr").exists()
+
+
 def test_wrong_options(lit):
     with pytest.raises(kdray.UsageError, match="mode is one of"):
         lit.render(size=(8, 8), mode="fast")
