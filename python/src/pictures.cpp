@@ -94,7 +94,9 @@ image::Image image_of(const Pixels& pixels) {
 
 void place_within(const std::array<int, 4>& within, image::Image& image) {
   const auto& [x, y, width, height] = within;
-  const bool fits = x >= 0 && y >= 0 && image.width <= width - x && image.height <= height - y;
+  constexpr int kMost = 1 << 24;
+  const bool fits = x >= 0 && y >= 0 && width >= 1 && height >= 1 && width <= kMost && height <= kMost &&
+                    image.width <= width - x && image.height <= height - y;
   if (!fits) throw Error(ErrorCode::usage, "within: the picture does not lie in that one");
   image.x = x, image.y = y, image.whole_width = width, image.whole_height = height;
 }

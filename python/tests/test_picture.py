@@ -156,7 +156,7 @@ def test_a_part_says_where_it_lies(lit, tmp_path):
         return np.frombuffer(header, "<i4", 4, at).tolist()
 
     assert window(b"dataWindow") == [21, 9, 50, 28] and window(b"displayWindow") == [0, 0, 59, 39]
-    for wrong in [(31, 9, 60, 40), (-1, 0, 60, 40), (0, 0, 29, 40), (0, 0, 2**31 - 1, 3)]:
+    for wrong in [(31, 9, 60, 40), (-1, 0, 60, 40), (0, 0, 29, 40), (0, 0, 2**31 - 1, 2**31 - 1), (1, 0, -(2**31), 9)]:
         with pytest.raises(kdray.UsageError, match="within"):
             part.save(tmp_path / "b.exr", within=wrong)
     assert not (tmp_path / "b.exr").exists()

@@ -51,7 +51,11 @@ void check_unknown(const CLI::App& app) {
   const CLI::App& command = innermost(app);
   bool may_be_option = true;  // behind "--" nothing is
   for (const std::string& word : command.remaining()) {
-    if (word == "--") may_be_option = false;
+    if (word == "--") {
+      may_be_option = false;
+      continue;
+    }
+
     const bool is_option = may_be_option && word.starts_with("-") && word != "-";
 
     if (!is_option && command.get_subcommands({}).empty()) continue;

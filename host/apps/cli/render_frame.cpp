@@ -186,14 +186,14 @@ PreparedScene seen_after(const FrameMaker::First& first, const PreparedScene& sh
   View view = o.view.view;
   if (o.view.transparent && shown.settings().framing.studio) view.background = {0, 0, 0};
   const scene::Framing& framing = shown.settings().framing;
-  if (!framing.camera && !framing.lights && framing.illuminance == 0 && !view.side)
+  if (!framing.camera && !framing.lights && framing.illuminance == 0 && !view.side && view.ortho_width != 0.0)
     return seen_by(view, shown, o);
   return shown.seen_after(first(), view, o.render.width, o.render.height);
 }
 
 // No rank knows the shape of a scene that is held in shares, by which a studio is furnished.
-void take_plain_look(RenderArgs& o, const scene::Scene& scene) {
-  if (!o.view.look && scene.framing.camera && scene.framing.lights && leads() && !o.quiet)
+void take_plain_look(RenderArgs& o, const scene::Scene& scene, bool is_further) {
+  if (!o.view.look && !is_further && scene.framing.camera && scene.framing.lights && leads() && !o.quiet)
     say("in the plain look, as ranks hold shares of the scene; --hold whole --look studio for the other");
   o.view.look = Look::plain;
 }
@@ -216,13 +216,17 @@ FrameMaker::FrameMaker(RenderArgs& o, const First& first) : is_further_(first !=
       o.hooks, OpeningByRanks{.in_shares = in_shares, .before_lookup = wait_for_scene});
   if (scene_->cache() != "off") tell_of_scene(*scene_);
   o.hooks.whole = scene_->whole();
-  if (in_shares) take_plain_look(o, scene_->scene().settings());
+  if (in_shares) take_plain_look(o, scene_->scene().settings(), is_further_);
   shown_ = in_look(scene_->scene(), o.view);
   seen_ = first ? seen_after(first, *shown_, o) : seen_by(o.view.view, *shown_, o);
   check_transparent(o, seen_->settings());
   if (o.view.view.focus && !is_further_ && !o.quiet && leads() && !(seen_->settings().camera->aperture > 0))
     say("--focus has no effect: there is no lens; --aperture D puts one in");
   renderer_ = api::make_renderer(*seen_, scene_->device(), o.hooks);
+}
+
+const DBox& FrameMaker::box() const {
+  return shown_->settings().framing.box;
 }
 
 void FrameMaker::turn(const RenderArgs& o, double turns) {

@@ -17,6 +17,7 @@
 #include "apps/cli/render_options.h"
 #include "apps/cli/run_files.h"
 #include "apps/cli/scene_input.h"
+#include "base/box.h"
 #include "base/timer.h"
 #include "io/image/picture_file.h"
 #include "kdray/kdray.h"
@@ -53,6 +54,8 @@ class FrameMaker {
   explicit FrameMaker(RenderArgs& o, const First& first = {});
 
   const PreparedScene& seen() const { return *seen_; }
+  // What is worth showing of its scene.
+  const DBox& box() const;
 
   // Has the frames from the next one on seen after so many turns about the scene (Turntable).
   void turn(const RenderArgs& o, double turns);

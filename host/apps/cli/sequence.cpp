@@ -5,6 +5,7 @@
 
 #include <cctype>
 #include <chrono>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -20,6 +21,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "engine/checkpoint/leases.h"
+#include "scene/model/frame.h"
 #include "scene/model/scene.h"
 
 namespace kdray::cli {
@@ -71,9 +73,10 @@ void check_sequence(const RenderArgs& o) {
   if (!o.output.empty() && !o.write.format) image::format_for_writing(o.output);  // before it is numbered
   const View& v = o.view.view;
   if (!o.checkpoint.camera_path.empty() &&
-      (v.camera || v.from || v.at || v.up || v.side || v.fov || v.ortho_width))
+      (v.camera || v.from || v.at || v.up || v.side || v.fov || v.ortho_width || v.aperture || v.focus))
     refuse(
-        "--camera-path says where the camera is; leave --from, --at, --up, --fov, --camera and --ortho out");
+        "--camera-path says where the camera is; leave --from, --at, --up, --view, --fov, --camera, --ortho, "
+        "--aperture and --focus out");
 }
 
 constexpr std::size_t kMostBytes = 1 << 16;
@@ -123,6 +126,8 @@ std::string settings_of(const RenderArgs& o) {
   add("--ortho", in_text(v.ortho_width));
   add("--aperture", in_text(v.aperture));
   add("--focus", in_text(v.focus));
+  add("--look", in_text(o.view.look ? std::optional(static_cast<int>(*o.view.look)) : std::nullopt));
+  add("--smooth", in_text(load.smooth_degrees));
   add("--background", o.view.transparent ? "transparent" : in_text(v.background));
   add("--headlight", fmt::format("{}", v.headlight));
   return text;
@@ -199,7 +204,9 @@ class Sequence {
 
  private:
   void make(int number);
-  const scene::Scene& first();
+  void find_first(int number);
+  const scene::Scene& first() const;
+  void tell_of_movement(int number);
   void render_shared();
   void make_what_is_missing();
 
@@ -207,8 +214,13 @@ class Sequence {
   FrameRange range_;
   std::optional<CameraPath> path_;
   std::optional<FrameMaker> maker_;
-  SceneInput opened_;                  // what the maker has
-  std::optional<scene::Scene> first_;  // of several scenes: what the others take over from
+  SceneInput opened_;  // what the maker has
+  // Of several scenes: the first frame that shows anything, from which the others take over, or why it can't
+  // be read.
+  std::optional<scene::Scene> first_;
+  int first_number_ = range_.first;
+  std::exception_ptr fault_;
+  bool has_told_ = false;
 };
 
 void Sequence::make(int number) {
@@ -216,22 +228,57 @@ void Sequence::make(int number) {
   if (!maker_ || opened_.file != frame.scene.file || !(opened_.load == frame.scene.load)) {
     maker_.reset();
     const bool is_further = number != range_.first && (is_numbered(o_) || o_.checkpoint.fps);
+    if (is_further) find_first(number);
     const FrameMaker::First first = [this]() -> const scene::Scene& { return this->first(); };
-    maker_.emplace(frame, is_further ? first : FrameMaker::First());
+    const bool takes_over = fault_ || (first_ && number > first_number_);
+    maker_.emplace(frame, takes_over ? first : FrameMaker::First());
     opened_ = frame.scene;
-    if (number == range_.first) first_ = maker_->seen().settings();
+    if (!first_ && !fault_ && first_number_ == number) {
+      if (maker_->box().empty())
+        ++first_number_;
+      else
+        first_ = maker_->seen().settings();
+    }
+    if (takes_over) tell_of_movement(number);
   }
   if (o_.checkpoint.turntable > 0) maker_->turn(frame, static_cast<double>(number) / o_.checkpoint.turntable);
   maker_->make(frame);
 }
 
-const scene::Scene& Sequence::first() {
-  if (!first_) {  // another process has made it, or a run before
-    RenderArgs frame = args_of(o_, path_, range_.first);
+// Finds the first frame before `number` that shows anything, where another process has made it, or a run
+// before. One that can't be read is an error for frames that lack what they would take over.
+void Sequence::find_first(int number) {
+  for (; !first_ && !fault_ && first_number_ < number; ++first_number_) {
+    RenderArgs frame = args_of(o_, path_, first_number_);
     frame.quiet = true;
-    first_ = FrameMaker(frame).seen().settings();
+    try {
+      const FrameMaker maker(frame);
+      if (maker.box().empty()) continue;
+      first_ = maker.seen().settings();
+      return;
+    } catch (const Error&) {
+      fault_ = std::current_exception();
+    }
   }
+}
+
+const scene::Scene& Sequence::first() const {
+  if (fault_) std::rethrow_exception(fault_);
   return *first_;
+}
+
+void Sequence::tell_of_movement(int number) {
+  if (o_.quiet || has_told_ || !first_ || !first_->framing.camera || o_.view.view.from || path_) return;
+  const DBox &there = first_->framing.box, &here = maker_->box();
+  const dvec3 margin = 0.5 * there.extent();
+  if (here.empty() || (scene::contains({there.lo - margin, there.hi + margin}, here.lo) &&
+                       scene::contains({there.lo - margin, there.hi + margin}, here.hi)))
+    return;
+  has_told_ = true;
+  say(
+      fmt::format("frame {} reaches beyond what the view of frame {} is made for; --from and --at say where "
+                  "to look from",
+                  number, first_number_));
 }
 
 void Sequence::render_shared() {

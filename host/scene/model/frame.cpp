@@ -275,21 +275,20 @@ bool is_made_up(const Scene& scene, const View& view) {
   return (scene.framing.camera || (view.side && !scene.framing.box.empty())) && !view.camera;
 }
 
-// The lights and all else that was made up with them; or else a glTF file's own lights as bright as they are
-// in the first frame.
-void light_as(const Scene& first, const View& view, Scene& scene) {
-  if (!scene.framing.lights) {
-    const double there = first.framing.illuminance, here = scene.framing.illuminance;
-    if (there > 0 && here > 0)
-      for (Light& light : scene.lights) light.color *= static_cast<float>(here / there);
-    if (view.headlight > 0) scene.lights.push_back(headlight(*scene.camera, view.headlight));
-    return;
+// Has what is made up for the scene be made up for what a film's first frame shows; or else a glTF file's own
+// lights be as bright as there.
+void take_over(const Scene& first, const View& view, Scene& scene) {
+  Framing& framing = scene.framing;
+  if (is_made_up(scene, view)) {
+    const bool own_background = framing.studio && framing.studio->own_background;
+    framing.box = first.framing.box;
+    framing.studio = first.framing.studio;
+    if (framing.studio) framing.studio->own_background = own_background;
+    scene.settings.samples = first.settings.samples;
   }
-  scene.lights = first.lights;
-  if (!first.framing.studio) return;
-  scene.framing.studio = first.framing.studio;
-  scene.framing.floor = first.framing.floor;
-  if (!first.framing.studio->own_background && !view.background) scene.sky = first.sky;
+  if (!framing.lights && first.framing.illuminance > 0 && framing.illuminance > 0)
+    for (Light& light : scene.lights)
+      light.color *= static_cast<float>(framing.illuminance / first.framing.illuminance);
 }
 
 }  // namespace
@@ -319,9 +318,11 @@ Camera camera_of(const Scene& scene, const View& view, double aspect) {
 }
 
 void set_view(Scene& scene, const View& view, double aspect, const Scene* first) {
-  scene.camera = first && is_made_up(scene, view) ? first->camera : camera_of(scene, view, aspect);
+  const bool has_firsts = first && is_made_up(scene, view);
+  if (first) take_over(*first, view, scene);
+  scene.camera = has_firsts ? first->camera : camera_of(scene, view, aspect);
+  if (first && view.ortho_width == 0.0) scene.camera->ortho_width = first->camera->ortho_width;
   if (view.background) scene.background = *view.background, scene.sky = {};
-  if (first) return light_as(*first, view, scene);
   if (scene.framing.lights) {
     scene.lights.clear();
     scene.framing.studio ? furnish_studio(scene, view) : add_lights(scene);

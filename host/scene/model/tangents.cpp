@@ -48,7 +48,10 @@ Tangent unpacked_tangent(const float* packed) {
 }
 
 void move_tangents(const dmat3& linear, PageVector<layout::TexCoords>& tangents) {
-  const double side = glm::determinant(linear) < 0 ? -1 : 1;
+  // At a size of about 1, so that no product leaves double's range.
+  const double size =
+      std::max({largest_component(linear[0]), largest_component(linear[1]), largest_component(linear[2])});
+  const double side = glm::determinant(linear * scale_to_one(size)) < 0 ? -1 : 1;
   for (layout::TexCoords& at : tangents)
     for (auto& corner : at.uv) {
       Tangent t = unpacked_tangent(corner);

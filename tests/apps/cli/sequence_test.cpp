@@ -244,6 +244,25 @@ TEST_F(SequenceTest, NumberedScenesHaveOneViewThatIsMadeUp) {
       EXPECT_NEAR(now.n / before.n, 1, 0.25) << frame;
     }
   }
+  // What comes before anything is there has a view of its own; a camera of its own, lights for that.
+  folder.put("w0.obj", "v 0 0 0\n");
+  film("w%d.obj", {});
+  EXPECT_GT(seen(1).n, 1000) << "the first that shows anything is framed";
+  EXPECT_GT(seen(2).column, seen(1).column + 1);
+  folder.put("w0.obj", flying(0));
+  const auto unlit = [](double x, double z) {
+    return fmt::format(R"({{"camera": {{"from": [{}, 0, {}], "at": [0, 0, 0], "up": [0, 1, 0]}},
+        "objects": [{{"type": "sphere", "center": [0, 0, 0], "radius": 1}}]}})",
+                       x, z);
+  };
+  folder.put("h0.json", unlit(0, 5)), folder.put("h1.json", unlit(5, 0));
+  const Arguments lit = {"--size", "64x48", "-q", "--look", "plain", "--headlight", "1"};
+  Arguments both{"render", "h%d.json", "--frames", "0..1", "-o", "g%d.png"},
+      alone{"render", "h1.json", "-o", "h.png"};
+  both.insert(both.end(), lit.begin(), lit.end()), alone.insert(alone.end(), lit.begin(), lit.end());
+  ASSERT_TRUE(succeeds(kdray(both, {.folder = folder.path()})));
+  ASSERT_TRUE(succeeds(kdray(alone, {.folder = folder.path()})));
+  EXPECT_EQ(folder.get("g1.png"), folder.get("h.png"));
   // Whoever makes a frame finds out about the first one.
   film("w%d.obj", {"--share", "shared"});
   const std::string last = folder.get("f2.png");
@@ -320,6 +339,7 @@ TEST_F(SequenceTest, WhatMakesNoSequence) {
   EXPECT_TRUE(fails_with(render({"--frames", "1-2", "--camera-path", path}), 2, "A..B"));
   EXPECT_TRUE(fails_with(render({"--frames", "3..2", "--camera-path", path}), 2, "--frames"));
   EXPECT_TRUE(fails_with(render({"--frames", "1..2", "--camera-path", path, "--fov", "3"}), 2, "--fov"));
+  EXPECT_TRUE(fails_with(render({"--frames", "1..2", "--camera-path", path, "--focus", "3"}), 2, "--focus"));
   EXPECT_TRUE(
       fails_with(render({"--frames", "1..2", "--camera-path", path, "-o", "-"}), 2, "a file for each frame"));
   EXPECT_TRUE(fails_with(render({"--restarts", "2"}), 2, "--checkpoint DIR or --share DIR"));
