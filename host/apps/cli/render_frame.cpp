@@ -174,21 +174,17 @@ void tell_of_scene(OpenedScene& scene) {
   ranks_of_this_run()->send_to_others(transport::kTagsOfScenes.first, {});
 }
 
-// A background that becomes transparent is one colour, in a studio too.
-PreparedScene seen_by(View view, const PreparedScene& shown, const RenderArgs& o) {
-  const bool in_studio = shown.settings().framing.studio.has_value();
-  if (in_studio && o.view.transparent) view.background = {0, 0, 0};
-  return in_studio || o.view.any || view.from ? shown.seen(view, o.render.width, o.render.height) : shown;
-}
-
-// As a further frame of a film.
-PreparedScene seen_after(const FrameMaker::First& first, const PreparedScene& shown, const RenderArgs& o) {
-  View view = o.view.view;
-  if (o.view.transparent && shown.settings().framing.studio) view.background = {0, 0, 0};
+// A background that becomes transparent is one colour, in a studio too. `first`: it is a further frame of a
+// film.
+PreparedScene seen_by(View view, const PreparedScene& shown, const RenderArgs& o,
+                      const FrameMaker::First& first = {}) {
   const scene::Framing& framing = shown.settings().framing;
-  if (!framing.camera && !framing.lights && framing.illuminance == 0 && !view.side && view.ortho_width != 0.0)
-    return seen_by(view, shown, o);
-  return shown.seen_after(first(), view, o.render.width, o.render.height);
+  const bool in_studio = framing.studio.has_value();
+  if (in_studio && o.view.transparent) view.background = {0, 0, 0};
+  const bool takes_over =
+      framing.camera || framing.lights || framing.illuminance > 0 || view.side || view.ortho_width == 0.0;
+  if (first && takes_over) return shown.seen_after(first(), view, o.render.width, o.render.height);
+  return in_studio || o.view.any || view.from ? shown.seen(view, o.render.width, o.render.height) : shown;
 }
 
 // No rank knows the shape of a scene that is held in shares, by which a studio is furnished.
@@ -218,7 +214,7 @@ FrameMaker::FrameMaker(RenderArgs& o, const First& first) : is_further_(first !=
   o.hooks.whole = scene_->whole();
   if (in_shares) take_plain_look(o, scene_->scene().settings(), is_further_);
   shown_ = in_look(scene_->scene(), o.view);
-  seen_ = first ? seen_after(first, *shown_, o) : seen_by(o.view.view, *shown_, o);
+  seen_ = seen_by(o.view.view, *shown_, o, first);
   check_transparent(o, seen_->settings());
   if (o.view.view.focus && !is_further_ && !o.quiet && leads() && !(seen_->settings().camera->aperture > 0))
     say("--focus has no effect: there is no lens; --aperture D puts one in");
