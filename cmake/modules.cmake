@@ -20,8 +20,9 @@ if(KDRAY_SANITIZE_THREADS)
   target_link_options(kdray_sanitizers INTERFACE -fsanitize=thread)
 endif()
 if(KDRAY_SANITIZE)
+  # Lines are enough for reports; what is instrumented takes long enough to compile.
   target_compile_options(kdray_sanitizers INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined
-                                                    -fno-omit-frame-pointer)
+                                                    -fno-omit-frame-pointer -O1 -g1)
   # Instrumented code makes g++ see uninitialised uses in std::function and std::regex that are not there.
   target_compile_options(kdray_sanitizers INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   target_link_options(kdray_sanitizers INTERFACE -fsanitize=address,undefined)
@@ -36,7 +37,7 @@ endif()
 # kdray_module(NAME SOURCES ... [PUBLIC libs...] [PRIVATE libs...] [APART])
 #   Adds the library kdray_NAME (alias kdray::NAME) from the folder of that name. Headers are included as "GROUP/NAME/file.h".
 #   A module's files are compiled several at a time, as one: most of the time goes into headers that all of them include. Names in
-#   unnamed namespaces must differ within a module, then. (The preset `dev` joins nothing, so that a missing #include is found there.)
+#   unnamed namespaces must differ within a module, then. (scripts/nightly compiles them one by one, so that a missing #include is found.)
 #   APART: each file by itself, where the code that the compiler makes of it counts, or types in unnamed namespaces have linkage.
 function(kdray_module name)
   cmake_parse_arguments(MODULE "APART" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
@@ -56,7 +57,7 @@ endfunction()
 
 # kdray_compile_quickly(TARGET HEADERS...)
 #   For code that takes longer to compile than it will ever run: less optimised, and with the headers of other libraries
-#   precompiled. (The preset `dev` precompiles nothing, so that a missing #include is found there.)
+#   precompiled. (Not in scripts/nightly's step `includes`, so that a missing #include is found there.)
 function(kdray_compile_quickly target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
   if(KDRAY_PRECOMPILE)

@@ -25,7 +25,7 @@ inline std::map<std::string, std::string> mpirun_environment() {
           {"PRTE_MCA_rmaps_default_mapping_policy", ":oversubscribe"},  // the same for Open MPI 5
           {"OMPI_MCA_mpi_yield_when_idle", "1"},
           {"OMPI_MCA_plm_rsh_agent", ""},
-          {"ASAN_OPTIONS", "detect_leaks=0"},  // MPI leaves some behind
+          {"ASAN_OPTIONS", "detect_leaks=0:use_sigaltstack=0"},  // MPI leaves some behind
           {"OMPI_MCA_btl_vader_single_copy_mechanism", "none"}};
 }
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <bit>
 #include <limits>
 #include <map>
 #include <unordered_map>
@@ -21,24 +20,25 @@ namespace kdray::odprt {
 
 namespace {
 
-// For each primitive a bit for every part that holds it.
+// For each primitive how many parts hold it.
 struct Holders {
-  std::array<std::vector<std::uint64_t>, kKinds> of;
+  std::array<std::vector<std::uint32_t>, kKinds> of;
 
   explicit Holders(const flatten::FlatScene& scene) {
     primitives::for_each_kind([&](auto kind) { of[kind.kNumber].resize(decltype(kind)::of(scene).size()); });
   }
-  void add(std::uint32_t kind, std::uint32_t index, std::uint64_t part) {
-    std::atomic_ref(of[kind][index]).fetch_or(part, std::memory_order_relaxed);
+  void add(std::uint32_t kind, std::uint32_t index) {
+    std::atomic_ref(of[kind][index]).fetch_add(1, std::memory_order_relaxed);
   }
 };
 
 struct Sizes {
   std::size_t nodes = 0;
   std::array<std::size_t, kKinds> blocks{};
-  std::vector<std::uint32_t> instances;      // by number
-  std::vector<layout::u32> roots;            // of their meshes
-  std::array<std::uint32_t, kKinds> meshes;  // the first primitive that is in one of these
+  std::array<std::vector<std::uint32_t>, kKinds> primitives;  // ascending
+  std::vector<std::uint32_t> instances;                       // by number
+  std::vector<layout::u32> roots;                             // of their meshes
+  std::array<std::uint32_t, kKinds> meshes;                   // the first primitive that is in one of these
 
   Sizes() { meshes.fill(std::numeric_limits<std::uint32_t>::max()); }
 };
@@ -64,7 +64,6 @@ class PartWalk {
 
   const flatten::WideForm& form() const { return form_; }
   const Cut& cut() const { return cut_; }
-  std::uint32_t part() const { return part_; }
 
  private:
   const flatten::WideForm& form_;
@@ -83,9 +82,11 @@ class Counting {
  public:
   Counting(const flatten::FlatScene& scene, const PartWalk& walk, Holders& holders)
       : scene_(scene), walk_(walk), holders_(holders) {
+    for (std::uint32_t kind = 0; kind < kKinds; ++kind) held_[kind].resize(holders.of[kind].size());
     count_opened(0);
     std::sort(sizes_.instances.begin(), sizes_.instances.end());
     count_meshes();
+    list_primitives();
   }
 
   const Sizes& sizes() const { return sizes_; }
@@ -138,16 +139,26 @@ class Counting {
     for (std::uint32_t b = 0; b < n; ++b, words += kBlockRows[kind] * width)
       for (std::size_t lane = 0; lane < width; ++lane) {
         const std::uint32_t index = words[lane] & ~KDRAY_WIDE_LAST;
-        holders_.add(kind, index, std::uint64_t{1} << walk_.part());
+        held_[kind][index] = true;
         if (in_mesh_) sizes_.meshes[kind] = std::min(sizes_.meshes[kind], index);
         if (words[lane] & KDRAY_WIDE_LAST) break;  // the last primitive; empty lanes follow
       }
     sizes_.blocks[kind] += n;
   }
 
+  void list_primitives() {
+    for (std::uint32_t kind = 0; kind < kKinds; ++kind)
+      for (std::uint32_t i = 0; i < held_[kind].size(); ++i)
+        if (held_[kind][i]) {
+          sizes_.primitives[kind].push_back(i);
+          holders_.add(kind, i);
+        }
+  }
+
   const flatten::FlatScene& scene_;
   const PartWalk& walk_;
   Holders& holders_;
+  std::array<std::vector<bool>, kKinds> held_;
   bool in_mesh_ = false;
   Sizes sizes_;
 };
@@ -160,16 +171,13 @@ struct Numbering {
 };
 
 // Primitives of meshes, which lie behind the scene's own, count as a part's own, whoever else holds them.
-Numbering number(const Holders& holders, const flatten::FlatScene& scene, const Sizes& sizes,
-                 std::uint32_t part) {
+Numbering number(const Holders& holders, const flatten::FlatScene& scene, const Sizes& sizes) {
   Numbering n;
-  const std::uint64_t bit = std::uint64_t{1} << part;
   for (std::uint32_t kind = 0; kind < kKinds; ++kind) {
-    const std::vector<std::uint64_t>& of = holders.of[kind];
+    const std::vector<std::uint32_t>& of = holders.of[kind];
     std::vector<std::uint32_t> own;
-    for (std::uint32_t i = 0; i < of.size(); ++i)
-      if (of[i] & bit)
-        (std::has_single_bit(of[i]) || i >= sizes.meshes[kind] ? own : n.members[kind]).push_back(i);
+    for (const std::uint32_t i : sizes.primitives[kind])
+      (of[i] == 1 || i >= sizes.meshes[kind] ? own : n.members[kind]).push_back(i);
     if (kind == KDRAY_KIND_TRIANGLE) {
       n.n_shared = static_cast<std::uint32_t>(n.members[kind].size());
       std::sort(n.members[kind].begin(), n.members[kind].end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -482,7 +490,7 @@ std::vector<Part> make_parts(const flatten::FlatScene& scene, const flatten::Wid
   share_first_of_meshes(sizes);
   std::vector<Part> parts(n_parts);
   tbb::parallel_for(0u, n_parts, [&](std::uint32_t part) {
-    const Numbering numbering = number(holders, scene, sizes[part], part);
+    const Numbering numbering = number(holders, scene, sizes[part]);
     parts[part].flat = select_primitives(scene, numbering);
     parts[part].n_shared = numbering.n_shared;
     const PartWalk walk(form, cut, part_of, part);

@@ -37,7 +37,7 @@ std::vector<HitRow> hits_of(const std::string& bytes) {
   EXPECT_EQ(bytes.substr(0, 6), "\x93NUMPY");
   EXPECT_NE(bytes.find("('t', '<f4'), ('primitive', '<i4'), ('u', '<f4'), ('v', '<f4')"), std::string::npos);
   std::vector<HitRow> hits((bytes.size() - header) / sizeof(HitRow));
-  std::memcpy(hits.data(), bytes.data() + header, hits.size() * sizeof(HitRow));
+  if (!hits.empty()) std::memcpy(hits.data(), bytes.data() + header, hits.size() * sizeof(HitRow));
   return hits;
 }
 

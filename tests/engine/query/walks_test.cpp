@@ -53,7 +53,7 @@ std::vector<Ray> eye_rays(const dvec3& eye, const dvec3& at, double width, float
 
 template <class T>
 bool same_bits(const T& a, const T& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0;
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0);
 }
 
 bool same(const LocalHits& a, const LocalHits& b) {

@@ -57,7 +57,7 @@ class DriversThatFail : public testing::Test {
         {"KDRAY_CACHE_DIR", (folder_ / "cache").string()},
         {"KDRAY_TRIAL_SECONDS", fmt::format("{}", hangs ? kLimit : kPatience)},
         {"FAKE_DRIVER_LOG", (folder_ / "log").string()},
-        {"ASAN_OPTIONS", "handle_segv=0:handle_abort=0"}};  // crashes are to be crashes
+        {"ASAN_OPTIONS", "handle_segv=0:handle_abort=0:use_sigaltstack=0"}};  // crashes are to be crashes
     for (const auto& [name, value] : options.environment) environment[name] = value;
     options.environment = environment;
     return kdray(arguments, options);
