@@ -41,8 +41,8 @@ std::size_t film_bytes(const State& state, const Job& job) {
     if (!left)
       throw Error(
           ErrorCode::out_of_memory,
-          fmt::format("--device-memory {} is too little for pdprt, which has the whole scene ({}M) on "
-                      "every device; take more, or --mode odprt",
+          fmt::format("a device memory of {} is too little for pdprt, which has the whole scene ({}M) on "
+                      "every device; take more, or mode odprt",
                       job.options.device_memory, (state.scene_bytes >> 20) + 1));
     bytes = std::min(bytes, *left);
   }
@@ -59,7 +59,7 @@ std::string megabytes(std::uint64_t bytes) {
 std::string why_it_does_not_fit(const State& state, const Job& job, const std::string& scene_takes) {
   const auto is_limited = [&](const Device& d) { return !film_left_by_limit(state, d, job); };
   if (job.options.device_memory > 0 && std::ranges::any_of(state.devices, is_limited))
-    return fmt::format("{}, with a frame's rays and film more than --device-memory {}", scene_takes,
+    return fmt::format("{}, with a frame's rays and film more than the device memory of {}", scene_takes,
                        job.options.device_memory);
   // Channels need every array whole.
   if (const Device* d = too_small_for_an_array(state); d != nullptr && job.options.channels.empty())

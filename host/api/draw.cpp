@@ -45,9 +45,8 @@ namespace {
 // The wide form is what is divided, so that all walks but the binary tree's will do.
 Traversal traversal_of(Traversal wanted, bool on_cpus) {
   if (wanted == Traversal::binary)
-    throw Error(
-        ErrorCode::usage,
-        "odprt divides the wide form of the tree; take another --traversal than binary, or --mode pdprt");
+    throw Error(ErrorCode::usage,
+                "odprt divides the wide form of the tree; take another traversal than binary, or mode pdprt");
   // Packets and batches are explicit vectors, for CPUs; elsewhere the lanes are work-items.
   return wanted == Traversal::automatic && !on_cpus ? Traversal::wide : wanted;
 }
@@ -104,7 +103,7 @@ odprt::Request request_for(State& state, Job& job) {
 FrameResult draw_odprt(State& state, Job& job) {
   const RenderOptions& o = job.options;
   if (o.device_memory > 0 && !o.channels.empty())
-    throw Error(ErrorCode::usage, "--aov needs the whole scene on a device; leave --device-memory out");
+    throw Error(ErrorCode::usage, "channels need the whole scene on a device; set no limit for its memory");
   if (o.device_memory > 0 && state.ranks)
     throw Error(ErrorCode::usage,
                 "with ranks each part of the scene stays where it is; take more ranks for --device-memory");

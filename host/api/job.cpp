@@ -68,6 +68,7 @@ Job make_job(State& state, const RenderOptions& options, timeline::Timeline* tim
   const layout::Features features =
       state.devices.features() | flatten::features_of_samples(o.samples, o.adaptive_target > 0) | state.keep;
   Job job{o, frame_of(scene, o), features, timeline};
+  if (job.frame.lens_radius > 0) job.features |= KDRAY_FEATURE_LENS;  // the scene's own camera may have none
   use_core(state, job);
   return job;
 }

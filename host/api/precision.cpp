@@ -12,12 +12,11 @@ Traversal traversal_in(Precision precision, Traversal wanted, const DeviceInfo& 
   if (precision == Precision::float32) return wanted;
   if (wanted != Traversal::automatic && wanted != Traversal::binary)
     throw Error(ErrorCode::usage,
-                "--precision double has the binary walk alone; leave --traversal out, or take binary");
+                "double precision has the binary walk alone; leave traversal out, or take binary");
   if (!device.double_precision)
-    throw Error(ErrorCode::no_device,
-                fmt::format("{} does not compute in double; leave --precision double out, or take another "
-                            "--device",
-                            device.name));
+    throw Error(
+        ErrorCode::no_device,
+        fmt::format("{} does not compute in double; take float precision, or another device", device.name));
   return Traversal::binary;
 }
 
@@ -35,7 +34,7 @@ void check_form(bool is_walked, const prepare::Prepared& scene) {
     throw Error(
         ErrorCode::usage,
         "the scene was prepared without the tree's binary form, which the binary walk, double and channels "
-        "take; leave TreeOptions::binary_form true");
+        "take; set TreeOptions::binary_form");
 }
 
 void check_channels(const RenderOptions& options, const prepare::Prepared& scene) {
@@ -57,10 +56,11 @@ void check_channels(const RenderOptions& options, const prepare::Prepared& scene
 void check_division(const RenderOptions& options) {
   if (options.precision == Precision::float32) return;
   if (options.mode == Mode::odprt)
-    throw Error(ErrorCode::usage, "odprt is float's alone; take --mode pdprt for --precision double");
+    throw Error(ErrorCode::usage, "odprt is float's alone; take mode pdprt for double precision");
   if (options.device_memory > 0)
-    throw Error(ErrorCode::usage,
-                "--device-memory is odprt's, which is float's alone; leave it out for --precision double");
+    throw Error(
+        ErrorCode::usage,
+        "device memory is limited in odprt, which is float's alone; set no limit for double precision");
 }
 
 }  // namespace kdray::api

@@ -68,7 +68,10 @@ PreparedScene PreparedScene::in_studio(bool instead) const {
   return PreparedScene(prepare::in_studio(*prepared_, instead));
 }
 PreparedScene PreparedScene::coverage() const {
-  return PreparedScene(prepare::coverage_of(*prepared_));
+  return PreparedScene(prepare::shining(*prepared_, vec3(1), false));
+}
+PreparedScene PreparedScene::backdrop() const {
+  return PreparedScene(prepare::shining(*prepared_, vec3(0), true));
 }
 void check_view(const scene::Scene& scene, const View& view) {
   static_cast<void>(scene::camera_of(scene, view_of(view), 1));

@@ -58,6 +58,7 @@ GeometryId Scene::Impl::add(scene::AddedGeometry&& geometry, const GeometryOptio
 }
 
 GeometryId Scene::Impl::put(scene::AddedGeometry&& geometry) {
+  const std::lock_guard lock(naming);
   geometries.emplace_back(std::move(geometry));
   note_other_geometries();
   return first_added + static_cast<GeometryId>(geometries.size() - 1);
@@ -167,6 +168,7 @@ GeometryId Scene::add_instances(GeometryId prototype, const Transforms& transfor
   return impl_->put(std::move(made));
 }
 void Scene::update_transforms(GeometryId instances, const Transforms& transforms) {
+  const std::lock_guard lock(impl_->naming);
   scene::move_instances(impl_->added(instances), transforms);
   impl_->note_change();
 }
@@ -179,6 +181,7 @@ void Scene::update_vertices(GeometryId mesh, const Points& vertices, const Point
   if (impl_->prototypes.erase(mesh) > 0) impl_->note_other_geometries();
 }
 void Scene::remove(GeometryId geometry) {
+  const std::lock_guard lock(impl_->naming);
   if (impl_->is_file(geometry)) {
     impl_->file.reset();
   } else {
@@ -270,6 +273,7 @@ std::vector<MaterialInfo> Scene::materials() const {
 
 std::string Scene::name_of(GeometryId geometry, std::uint32_t primitive, std::uint32_t instance) const {
   if (geometry == kNoGeometry) return {};
+  const std::shared_lock lock(impl_->naming);
   if (!impl_->is_file(geometry)) return impl_->added(geometry).name;
   std::string_view part;
   if (const auto& names = impl_->base.names)
@@ -279,6 +283,7 @@ std::string Scene::name_of(GeometryId geometry, std::uint32_t primitive, std::ui
 
 std::uint32_t Scene::material_of(GeometryId geometry, std::uint32_t primitive, std::uint32_t instance) const {
   if (geometry == kNoGeometry) return kNoMaterial;
+  const std::shared_lock lock(impl_->naming);
   if (impl_->is_file(geometry)) return impl_->base.material_of(primitive, instance);
   const auto n_file = static_cast<std::uint32_t>(impl_->base.materials.size());
   const scene::AddedGeometry& added = impl_->added(geometry);

@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <shared_mutex>
 #include <vector>
 
 #include "accel/prepare/refit.h"
@@ -49,7 +50,8 @@ struct Scene::Impl {
   double growth = 1;          // of what a ray is expected to cost, from then to what is committed
   bool has_replaced = false;  // by the last commit(): instances alone were elsewhere
 
-  std::mutex mutex;  // of `committed`
+  std::shared_mutex naming;  // of what hits are named by: geometries, which come and go, and their materials
+  std::mutex mutex;          // of `committed`
   std::shared_ptr<api::Committed> committed;
 
   bool is_file(GeometryId id) const { return file && id == 0; }

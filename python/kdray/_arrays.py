@@ -123,7 +123,7 @@ def masks(values: ArrayLike, name: str = "mask") -> tuple[Array, Shape]:
     if array.dtype == np.uint32:
         return _side_by_side(array.reshape(-1)), array.shape
     if array.dtype.kind not in "iu" or (array.size and (array.min() < -(2**31) or array.max() >= 2**32)):
-        raise errors.InputError(f"{name}: masks are whole numbers of 32 bits")
+        raise errors.InputError(f"{name}: whole numbers of 32 bits are wanted")
     return array.reshape(-1).astype(np.int64).astype(np.uint32), array.shape
 
 

@@ -43,9 +43,11 @@ class Camera:
     def numbers(self) -> list[float]:
         """Its fourteen numbers, for kdray._core."""
         lens = (self.fov, self.ortho_width, self.hither, self.aperture, self.focus)
-        numbers = [float(x) for x in (*self.origin, *self.target, *self.up, *lens)]
-        if len(numbers) != 14:
+        if not len(self.origin) == len(self.target) == len(self.up) == 3:
             raise UsageError("a camera's origin, target and up have three coordinates each")
+        numbers = [float(x) for x in (*self.origin, *self.target, *self.up, *lens)]
+        if not self.ortho_width >= 0:
+            raise UsageError(f"a camera's ortho_width is 0 or more, not {self.ortho_width}")
         if not self.ortho_width and not 0 < self.fov < 180:
             raise UsageError(f"a camera's fov is above 0 and below 180 degrees, not {self.fov}")
         return numbers

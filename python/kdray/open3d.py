@@ -54,7 +54,8 @@ class RaycastingScene:
     - Crossings are exact. A ray through an edge or a vertex crosses the surface once, in `count_intersections`,
       `list_intersections`, `compute_occupancy` and the sign of `compute_signed_distance`, where Open3D counts it
       twice or loses it; so `nsamples` has no effect. One that only touches an edge crosses twice or not at all.
-    - Of two triangles at the same distance it is the one with the smaller number that is hit.
+    - Of two triangles at the same distance it is the one with the smaller number that is hit; of two in one place
+      whose corners are in another order either may come first, by a rounding.
     - float64 vertices keep what float32 would lose, and rays and points in float64 are answered in float64. (Open3D
       refuses both.) Indices may be of any integer type.
     - Where there is nothing, nearest points and distances are infinite.

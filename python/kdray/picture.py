@@ -10,6 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._calls import tell_in_one_line
+from .errors import InputError
 
 
 class Picture(np.ndarray[Any, np.dtype[np.float32]]):
@@ -30,8 +32,9 @@ class Picture(np.ndarray[Any, np.dtype[np.float32]]):
     ) -> Picture:
         """Pixels (height, width, 3), linear; for `save` of whatever a program has computed."""
         picture = np.asarray(pixels, dtype=np.float32).view(cls)
-        picture.channels = channels or {}
-        picture.warnings = warnings or []
+        of = pixels if isinstance(pixels, Picture) else None
+        picture.channels = channels or (of.channels if of is not None else {})
+        picture.warnings = warnings or (of.warnings if of is not None else [])
         return picture
 
     def __array_finalize__(self, of: Any) -> None:
@@ -43,11 +46,13 @@ class Picture(np.ndarray[Any, np.dtype[np.float32]]):
         self.warnings = getattr(of, "warnings", [])
 
     def __array_wrap__(self, array: Any, *context: Any) -> Any:
-        return self._lend(super().__array_wrap__(array, *context))  # what arithmetic has made
+        made = super().__array_wrap__(array, *context)  # what arithmetic has made
+        return self._lend(made) if made.ndim > 0 else made[()]  # one number is a number
 
     def copy(self, order: Any = "C") -> Picture:
-        """A copy, with the channels."""
-        made: Picture = self._lend(super().copy(order))
+        """A copy, with copies of the channels."""
+        made = super().copy(order)
+        made.channels = {name: values.copy() for name, values in self.channels.items()}
         return made
 
     def astype(self, *args: Any, **named: Any) -> Any:
@@ -64,7 +69,7 @@ class Picture(np.ndarray[Any, np.dtype[np.float32]]):
 
     def _lend(self, made: Any) -> Any:
         if isinstance(made, Picture) and made is not self and made.shape == self.shape:
-            made.channels = self.channels
+            made.channels = dict(self.channels)
         return made
 
     @property
@@ -87,18 +92,23 @@ class Picture(np.ndarray[Any, np.dtype[np.float32]]):
         path: str | os.PathLike[str],
         *,
         gamma: float | None = None,
+        exposure: float = 0.0,
         bits: int = 8,
         within: tuple[int, int, int, int] | None = None,
     ) -> list[str]:
-        """Writes a .png (sRGB, or v^(1/gamma); 8 or 16 bits) or a .exr (linear, with all channels).
+        """Writes a .png (2^exposure times the colours in sRGB, or v^(1/gamma); 8 or 16 bits) or a .exr (linear, all
+        channels).
 
         `within` = (x, y, width, height): it is a part of a picture of that size and begins there, as `render`'s crop
         has it, which an EXR says by its windows. Returns the files' names: beside a PNG each channel has one of its
         own. Files are written whole or not at all. Raises InputError where that can't be done.
         """
-        channels = [(name, np.ascontiguousarray(values)) for name, values in self.channels.items()]
         pixels = self._pixels()
-        return list(_core.write_picture(os.fspath(path), pixels, channels, gamma or 0.0, bits, within))
+        for name, values in self.channels.items():
+            if np.shape(values) != pixels.shape[:2]:
+                raise InputError(f"the channel {name} is {np.shape(values)}, and the picture {pixels.shape[:2]}")
+        channels = [(name, np.ascontiguousarray(values, np.float32)) for name, values in self.channels.items()]
+        return list(_core.write_picture(os.fsdecode(path), pixels, channels, gamma or 0.0, exposure, bits, within))
 
     def _pixels(self) -> npt.NDArray[np.float32]:
         if self.ndim != 3 or self.shape[2] != 3:
@@ -111,3 +121,6 @@ class Picture(np.ndarray[Any, np.dtype[np.float32]]):
         if self.ndim != 3 or self.shape[2] != 3 or self.size == 0:
             return None
         return bytes(_core.encode_png(self._pixels()))
+
+
+tell_in_one_line(Picture, but={"copy", "astype"})

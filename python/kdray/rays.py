@@ -20,7 +20,8 @@ def pinhole_rays(camera: Camera, width: int, height: int, *, dtype: npt.DTypeLik
 
     They are the eye rays of `Scene.render` with that camera (`hither` is for a t_min): row 0 is the top. Directions of
     a perspective camera reach the plane at distance 1, so that t is the depth along the view, where the picture's
-    channel "depth" is the distance from the eye; an orthographic one's are of length 1.
+    channel "depth" is the distance from the eye; an orthographic one's are of length 1. In float32 an origin far from 0
+    is rounded (at 5e6 by a quarter): take ``dtype=np.float64`` there.
     """
     if width < 1 or height < 1:
         raise errors.UsageError(f"a picture of {width} x {height} has no pixels")

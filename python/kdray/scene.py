@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from . import _arrays, _core, _drivers, errors
 from ._arrays import Array, ArrayLike, RayArrays
-from ._calls import tell_in_one_line
+from ._calls import in_one_line, short, tell_in_one_line
 from ._pixels import pixels_of
 from ._results import FLOATS, Rows, as_rows, hit_columns, in_parts, known, result_of, type_of, width_of
 from .hits import AllHits, ClosestPoints, Hits
@@ -119,8 +119,9 @@ class Scene:
             raise errors.UsageError(f'geometry is "float", "double" or "auto", not {geometry!r}')
         self._core = core
         self._device, self._compute_units, self._geometry = device, compute_units, geometry
-        self._file: tuple[str, float | None, float | None, str, str] | None = None
+        self._file: tuple[str, float | None, float | None, str, str, str] | None = None
         self._added: dict[int, _Added] = {}  # by id
+        self._end = 1 if core.geometries() else 0  # the next id
         self._materials: list[Material] = []
         self._has_first_material = False
         self._has_instances = any(core.info(id)[5] > 0 for id in core.geometries())
@@ -284,6 +285,7 @@ class Scene:
             geometry = int(made)
             kept = tuple(None if a is None else a.copy() for a in arrays)
             self._added[geometry] = _Added(kind, kept, material, prototype)
+            self._end = geometry + 1
             self._changed = True
             return geometry
 
@@ -311,6 +313,7 @@ class Scene:
             geometry = int(self._core.add_instances(prototype, rows, of_each, name or "", bits))
             kept = (rows.copy(), None if of_each is None else of_each.copy())
             self._added[geometry] = _Added("instances", kept, None, False, prototype)
+            self._end = geometry + 1
             self._has_instances = True
             self._changed = True
             return geometry
@@ -325,7 +328,7 @@ class Scene:
             self._changed = True
 
     def update_vertices(self, id: int, vertices: ArrayLike, normals: ArrayLike | None = None) -> None:
-        """New places for a mesh's vertices, as many as it has; ids and numbers stay."""
+        """New places for a mesh's vertices, as many as it has, and normals where it has them; ids and numbers stay."""
         v, _ = _arrays.vectors(vertices, "vertices")
         n = None if normals is None else _arrays.vectors(normals, "normals")[0]
         with self._lock:
@@ -381,7 +384,7 @@ class Scene:
     def names_of(self, hits: Hits | AllHits) -> npt.NDArray[np.object_]:
         """Of each hit the name of its part or, where that has none, of its geometry; "" for a miss."""
         geometries = self.geometries
-        by_id = np.full(max((g.id for g in geometries), default=-1) + 2, "", dtype=object)  # the last one is of -1
+        by_id = np.full(self._end + 1, "", dtype=object)  # the last one is of -1
         for g in geometries:
             by_id[g.id] = g.name
         names = np.array(by_id[hits.geometry], dtype=object)
@@ -403,7 +406,7 @@ class Scene:
 
     @property
     def primitives(self) -> int:
-        """How many triangles and shapes are enabled."""
+        """How many triangles and shapes are enabled, without those of instances."""
         return int(self._core.primitives())
 
     @property
@@ -566,6 +569,8 @@ class Scene:
 
         Questions from other threads are answered from the state before until it returns.
         """
+        if quality not in ("fast", "balanced", "best"):
+            raise errors.UsageError(f'quality is "fast", "balanced" or "best", not {short(quality)}')
         with self._lock:
             self._quality = quality
             self._commit()
@@ -613,8 +618,8 @@ class Scene:
 
         A ray that is asked again with its t as t_min, which is exclusive, finds what comes after just that hit. Which
         surface comes first is decided in floats about the scene's centre; t of a float64 ray is that of this surface
-        in double, and a surface whose t is then not above t_min is none. (What remains: one within some 4e-6 of the
-        scene's size ahead of the start may be passed by, and of two as near to each other the farther one be found;
+        in double, and hits lie between t_min and t_max. (What remains: one within some 4e-6 of the scene's size ahead
+        of a start at t_min = 0 may be passed by, and of two as near to each other the farther one be found;
         `all_hits` decides the former in double.) Results are float32 for float32 rays. `fields` names the arrays of
         `Hits` that are wanted (all but `point`, and `instance` only where the scene has instances, if you say
         nothing): fewer are faster; `out` is a Hits to write into. Rays that mean nothing (NaN, no direction) are
@@ -647,7 +652,11 @@ class Scene:
         strict: bool = False,
         progress: Progress = False,
     ) -> npt.NDArray[np.bool_]:
-        """Whether each ray hits anything between t_min and t_max; for shadows and lines of sight."""
+        """Whether each ray hits anything between t_min and t_max; for shadows and lines of sight.
+
+        That is decided in floats, unless the scene has geometry="double": a surface within some 4e-6 of the scene's
+        size of either end may count or not, so a line of sight to a surface is to end a little before it.
+        """
         rays = RayArrays(origins, directions, t_min, t_max, mask)
         return self._ask_each(self._ready().any, rays, np.bool_, out, strict, progress, "any_hit")
 
@@ -665,9 +674,9 @@ class Scene:
     ) -> npt.NDArray[np.uint32]:
         """How many surfaces each ray crosses (uint32), each once, through edges and vertices too.
 
-        A ray from outside of a closed mesh to its outside has an even count, always. Whether a float64 ray begins
-        before or behind a surface is decided by its doubles, for triangles exactly (corners are floats about the
-        scene's centre, unless the scene has geometry="double").
+        A ray from outside of a closed mesh to its outside has an even count, always. Whether a float64 ray begins or
+        ends before or behind a surface is decided by its doubles, at t_min = 0 for triangles exactly (corners are
+        floats about the scene's centre, unless the scene has geometry="double").
         """
         rays = RayArrays(origins, directions, t_min, t_max, mask)
         return self._ask_each(self._ready().count, rays, np.uint32, out, strict, progress, "count_hits")
@@ -804,13 +813,13 @@ class Scene:
             raise errors.UsageError(f"adaptive is True, False or an error from 1e-6 to 1e6, not {adaptive}")
         if named or precision == "double":
             self._with_binary_form()
-        width, height = size
+        width, height = _size(size)
         numbers = {"the width": width, "the height": height, "samples": samples, "depth": depth}
         for name, value in numbers.items():
             if value is not None and value < 1:
                 raise errors.UsageError(f"{name} is at least 1, not {value}")
         w, h, rgb, planes, warnings = self._ready().render(
-            camera.numbers() if camera is not None else None,
+            _camera(camera),
             width,
             height,
             samples or 0,
@@ -840,15 +849,14 @@ class Scene:
         is 7878, or the next one that is free. The page is served to this machine alone, until `View.close` or the end
         of the program; `View.update` shows what has been changed since.
         """
-        width, height = size
+        width, height = _size(size)
         if width < 1 or height < 1:
             raise errors.UsageError(f"the size is at least 1 x 1, not {width} x {height}")
         if not 0 <= port <= 65535:
             raise errors.UsageError(f"a port is 1 to 65535, or 0, not {port}")
         self._with_binary_form()
         name = os.path.basename(self._file[0]) if self._file else "scene"
-        numbers = camera.numbers() if camera is not None else None
-        core = page_of(self._ready(), name, numbers, self._device, self._compute_units, port, look)
+        core = page_of(self._ready(), name, _camera(camera), self._device, self._compute_units, port, look)
         return View(self, core, (width, height))
 
     def _with_binary_form(self) -> None:
@@ -867,6 +875,7 @@ class Scene:
             return {name: copy.copy(getattr(self, name)) for name in (*names, *looks)} | {
                 "added": {id: added.copy() for id, added in self._added.items()},
                 "infos": infos,
+                "end": self._end,
             }
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -887,7 +896,7 @@ class Scene:
         infos = {info.id: info for info in state["infos"]}
         if file and 0 not in infos:
             self._core.remove(0)
-        for id in range(1 if file else 0, max(infos, default=-1) + 1):
+        for id in range(1 if file else 0, state["end"]):
             self._add_again(state["added"].get(id), infos.get(id))
         for id, info in infos.items():
             self._core.enable(id, info.enabled)
@@ -898,6 +907,7 @@ class Scene:
         if added is None or info is None:
             nothing = np.empty((0, 3), np.float32)
             self._core.remove(self._core.add_shapes("spheres", [nothing, nothing[:, 0]], "", 0, 0, False))
+            self._end = id + 1
         elif added.of is not None:
             transforms, materials = added.arrays
             self.add_instances(added.of, transforms, materials=materials, mask=info.mask, name=info.name)
@@ -920,6 +930,7 @@ class Scene:
         return f"<kdray.Scene of {len(self._core.geometries())} geometries, {self.primitives} primitives>"
 
 
+@in_one_line("kdray.load")
 def load(
     path: str | os.PathLike[str],
     *,
@@ -927,6 +938,7 @@ def load(
     time: float | None = None,
     animation: str | int = "",
     asset_root: str | os.PathLike[str] = "",
+    instances: str = "auto",
     device: str | int = "auto",
     geometry: str = "float",
 ) -> Scene:
@@ -935,13 +947,15 @@ def load(
     What is in it is geometry 0. `smooth`: triangles without normals get some where the surface turns by no more
     than so many degrees. `time`: the second of a glTF file's animation that is seen, of the first or of the
     `animation` with this name or number, or "all"; without it nodes are at rest. `asset_root`: a folder below which
-    the file may name pictures and buffers that are not beside it or below it. `device` and `geometry` are `Scene`'s.
+    the file may name pictures and buffers that are not beside it or below it. `instances`: meshes that the file shows
+    many times are held once where copies would be over a million primitives ("auto"), always ("kept") or never
+    ("flat"). `device` and `geometry` are `Scene`'s.
     Raises InputError with file, line, what is wrong and what to do.
     """
     chosen = _device(device)
     scene = Scene.__new__(Scene)
     root = os.fspath(asset_root)
-    file = (os.path.abspath(os.fspath(path)), smooth, time, str(animation), root and os.path.abspath(root))
+    file = (os.path.abspath(os.fsdecode(path)), smooth, time, str(animation), root and os.path.abspath(root), instances)
     scene._start(_core.Scene.load(*file), chosen, 0, geometry)
     scene._file = file
     return scene
@@ -962,6 +976,18 @@ def set_texture_cache(size: int) -> None:
 tell_in_one_line(Scene, but={"closest_hit", "any_hit", "count_hits"})
 
 # ---- Small things
+
+
+def _size(size: Any) -> tuple[int, int]:
+    if not isinstance(size, Sequence) or len(size) != 2:
+        raise errors.UsageError(f"size is (width, height), not {short(size)}")
+    return size[0], size[1]
+
+
+def _camera(camera: Any) -> list[float] | None:
+    if camera is not None and not isinstance(camera, Camera):
+        raise errors.UsageError(f"camera is a kdray.Camera, not {short(camera)}")
+    return None if camera is None else camera.numbers()
 
 
 def _device(wanted: str | int) -> str:

@@ -7,6 +7,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "arrays.h"
@@ -146,12 +147,13 @@ void add_pictures(nb::module_& module, SceneClass scene) {
   module.def(
       "write_picture",
       [](const std::string& file, const Pixels& pixels,
-         const std::vector<std::pair<std::string, Values>>& channels, double gamma, int bits,
+         const std::vector<std::pair<std::string, Values>>& channels, double gamma, double exposure, int bits,
          const std::optional<std::array<int, 4>>& within) {
         if (bits != 8 && bits != 16) throw Error(ErrorCode::usage, "a PNG has 8 or 16 bits");
         const std::vector<image::Channel> beside = channels_of(channels);
         check_channels(pixels, beside);
-        const image::WriteOptions options{{gamma == 0, gamma}, bits};
+        if (!(std::abs(exposure) <= 100)) throw Error(ErrorCode::usage, "exposure is from -100 to 100");
+        const image::WriteOptions options{{gamma == 0, gamma}, bits, exposure};
         image::Image image = image_of(pixels);
         if (within) place_within(*within, image);
         const image::Written written = image::write_picture(file, image, beside, options);
@@ -159,7 +161,7 @@ void add_pictures(nb::module_& module, SceneClass scene) {
         for (const auto& path : written.files) files.push_back(path.string());
         return files;
       },
-      "file"_a, "pixels"_a, "channels"_a, "gamma"_a, "bits"_a, "within"_a.none());
+      "file"_a, "pixels"_a, "channels"_a, "gamma"_a, "exposure"_a, "bits"_a, "within"_a.none());
   module.def("encode_png", [](const Pixels& pixels) {
     const std::string bytes = image::encode_picture(image::PictureFormat::png, image_of(pixels), {}, {});
     return nb::bytes(bytes.data(), bytes.size());

@@ -33,6 +33,13 @@ VertexPrecision geometry_of(const std::string& name) {
   throw Error(ErrorCode::usage, "geometry is \"float\", \"double\" or \"auto\", not \"" + name + "\"");
 }
 
+Instances instances_of(const std::string& name) {
+  if (name == "auto") return Instances::automatic;
+  if (name == "kept") return Instances::kept;
+  if (name == "flat") return Instances::flat;
+  throw Error(ErrorCode::usage, "instances is \"auto\", \"kept\" or \"flat\", not \"" + name + "\"");
+}
+
 void add_geometries(SceneClass& scene) {
   scene.def(
       "add_mesh",
@@ -186,14 +193,15 @@ SceneClass add_scene(nb::module_& module) {
   scene.def_static(
       "load",
       [](const std::string& file, std::optional<double> smooth_degrees, std::optional<double> time,
-         const std::string& animation, const std::string& asset_root) {
+         const std::string& animation, const std::string& asset_root, const std::string& instances) {
         return Scene::load(file, {.smooth_degrees = smooth_degrees,
                                   .time = time,
                                   .animation = animation,
+                                  .instances = instances_of(instances),
                                   .asset_root = asset_root});
       },
       Released(), "file"_a, "smooth_degrees"_a.none(), "time"_a.none() = nb::none(), "animation"_a = "",
-      "asset_root"_a = "");
+      "asset_root"_a = "", "instances"_a = "auto");
   add_geometries(scene);
   add_looks(scene);
   add_textures(scene);

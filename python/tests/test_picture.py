@@ -116,6 +116,55 @@ def test_saving(lit, tmp_path):
     assert sorted(file.name for file in tmp_path.iterdir()) == ["a.depth.png", "a.exr", "a.png", "part.png"]
 
 
+def test_what_is_made_of_a_picture(lit):
+    picture = lit.render(size=(8, 6), channels=["depth"])
+    assert isinstance(picture.mean(), np.floating) and round(picture.max(), 2) >= 0
+    other = picture.copy()
+    other.channels["depth"][:] = 7
+    assert not (picture.channels["depth"] == 7).any()
+    assert set(kdray.Picture(picture).channels) == {"depth"}
+
+
+@pytest.mark.parametrize("name", ["", "R", "../depth", "a/b"])
+@pytest.mark.parametrize("ending", ["png", "exr"])
+def test_names_of_channels_that_are_refused(tmp_path, name, ending):
+    picture = kdray.Picture(np.zeros((2, 3, 3)), {name: np.ones((2, 3), np.float32)})
+    with pytest.raises(kdray.InputError, match="a channel can't have the name"):
+        picture.save(tmp_path / f"x.{ending}")
+    assert not list(tmp_path.iterdir())
+
+
+def test_channels_that_do_not_fit_and_arguments_of_other_types(tmp_path):
+    with pytest.raises(kdray.InputError, match=r"the channel a is \(3, 2\), and the picture \(2, 3\)"):
+        kdray.Picture(np.zeros((2, 3, 3)), {"a": np.ones((3, 2), np.float32)}).save(tmp_path / "x.exr")
+    with pytest.raises(TypeError, match=r"kdray.Picture.save\(.*bits=16.5\): an argument"):
+        kdray.Picture(np.zeros((2, 3, 3))).save(tmp_path / "x.png", bits=16.5)
+    with pytest.raises(TypeError, match=r"kdray.load\('a.obj', smooth='x'\): an argument"):
+        kdray.load("a.obj", smooth="x")
+    kdray.Picture(np.zeros((2, 3, 3))).save(bytes(tmp_path / "y.png"))
+    assert (tmp_path / "y.png").exists()
+
+
+def test_a_lens_blurs_what_is_not_in_focus(lit):
+    def shown(**lens):
+        return lit.render(kdray.Camera((0, 0, 5), **lens), (24, 18), samples=64)
+
+    sharp, focused, blurred = shown(), shown(aperture=0.5, focus=4.9), shown(aperture=2, focus=1)
+    edge = [np.abs(np.diff(np.asarray(p)[..., 2], axis=1)).max() for p in (sharp, focused, blurred)]
+    assert edge[0] > 0 and not (sharp == focused).all()
+    assert edge[2] < 0.5 * edge[0]
+
+
+def test_an_exposure_doubles_what_a_png_shows(lit, tmp_path):
+    picture = lit.render(size=(16, 12))
+    picture.save(tmp_path / "a.png", exposure=1)
+    kdray.Picture(2 * picture).save(tmp_path / "b.png")
+    picture.save(tmp_path / "c.png")
+    assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes() != (tmp_path / "c.png").read_bytes()
+    with pytest.raises(kdray.UsageError, match="exposure"):
+        picture.save(tmp_path / "d.png", exposure=float("nan"))
+
+
 def test_pickled_pictures_are_the_same(lit):
     picture = lit.render(size=(8, 8), channels=["depth"])
     again = pickle.loads(pickle.dumps(picture))

@@ -255,8 +255,8 @@ def test_an_empty_scene_has_nothing_to_hit():
         ([[0, 0, 1j]], [0, 0, 1], {}, "origins: numbers are wanted"),
         ([[0, 0, 0]] * 2, [[0, 0, 1]] * 3, {}, r"directions has shape \(3,\) where origins has \(2,\)"),
         ([[0, 0, 0]] * 2, [0, 0, 1], {"t_min": [0] * 3}, r"t_min has shape \(3,\)"),
-        ([[0, 0, 0]], [0, 0, 1], {"mask": [2**32]}, "mask: masks are whole numbers of 32 bits"),
-        ([[0, 0, 0]], [0, 0, 1], {"mask": [0.5]}, "mask: masks are whole numbers of 32 bits"),
+        ([[0, 0, 0]], [0, 0, 1], {"mask": [2**32]}, "mask: whole numbers of 32 bits are wanted"),
+        ([[0, 0, 0]], [0, 0, 1], {"mask": [0.5]}, "mask: whole numbers of 32 bits are wanted"),
     ],
 )
 def test_what_is_wrong_is_named(ball, origins, directions, named, message):

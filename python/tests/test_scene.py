@@ -218,6 +218,40 @@ def test_files_that_are_wrong(tmp_path):
         kdray.load(bad)
 
 
+def test_a_quality_that_is_not_there_changes_nothing(ball_mesh):
+    scene = kdray.Scene()
+    scene.add_mesh(*ball_mesh)
+    with pytest.raises(kdray.UsageError, match='not "worst"|not .worst'):
+        scene.commit("worst")
+    assert scene.any_hit([0, 0, 5], [0, 0, -1])
+
+
+def test_copies_give_no_id_again(ball_mesh):
+    scene = kdray.Scene()
+    scene.add_mesh(*ball_mesh)
+    scene.remove(scene.add_spheres([[0, 0, 0]], 1))
+    for other in (scene.copy(), pickle.loads(pickle.dumps(scene))):
+        assert other.add_spheres([[0, 0, 0]], 1) == 2
+
+
+def test_names_of_what_was_removed_are_none(ball_mesh):
+    scene = kdray.Scene()
+    mesh = scene.add_mesh(*ball_mesh, name="ball")
+    hits = scene.closest_hit([[0, 0, 5]], [[0, 0, -1]])
+    scene.remove(mesh)
+    assert scene.names_of(hits).tolist() == [""]
+
+
+def test_instances_of_a_file_may_be_copied(tmp_path):
+    (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    (tmp_path / "a.json").write_text(
+        json.dumps({"objects": [{"type": "mesh", "file": "a.obj", "move": [k, 0, 0]} for k in range(3)]})
+    )
+    assert kdray.load(tmp_path / "a.json", instances="flat").primitives == 3
+    with pytest.raises(kdray.UsageError, match="not .keep"):
+        kdray.load(tmp_path / "a.json", instances="keep")
+
+
 def test_a_quality_that_is_not_there():
     with pytest.raises(kdray.UsageError, match="quality"):
         kdray.Scene().commit("perfect")

@@ -307,6 +307,50 @@ TEST_P(Doubles, ClosestHitsFollowEachOther) {
   EXPECT_GT(n, origins.size());
 }
 
+// t_min and t_max beside hits, by less than floats tell apart, or on them: each question leaves out the same.
+TEST_P(Doubles, HitsLieBetweenTheEndsOfTheirRays) {
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed);
+  std::uniform_real_distribution<double> way(-1, 1);
+  const Mesh mesh = torus(13, 9, random);
+  const Scene scene = scene_of(mesh.vertices, mesh.triangles);
+  const std::size_t n = 3000;
+  std::vector<Point> origins(n), directions(n);
+  for (Point& p : origins) p = {2 * way(random), 2 * way(random), way(random)};
+  for (std::size_t i = 0; i < n; ++i)  // towards the surface
+    for (std::size_t k = 0; k < 3; ++k) directions[i][k] = near_surface(mesh, random)[k] - origins[i][k];
+  Rays rays{{&origins.front()[0], n, sizeof(Point)}, {&directions.front()[0], n, sizeof(Point)}};
+  std::vector<double> no_t_min(n, -kInfinity), t_min(n), t_max(n);
+  rays.t_min = no_t_min;
+  const AllHits whole = scene.all(rays);  // of lines
+  const double beside[] = {1 - 1e-9, 1, 1 + 1e-9};
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t first = whole.splits[i], n_here = whole.splits[i + 1] - first;
+    const auto end = [&](double otherwise) {
+      if (n_here == 0 || random() % 3 == 0) return otherwise;
+      return whole.t[first + random() % n_here] * beside[random() % 3];
+    };
+    t_min[i] = end(-1e3), t_max[i] = end(kInfinity);
+  }
+  rays.t_min = t_min, rays.t_max = t_max;
+  std::vector<double> t(n);
+  std::vector<std::uint32_t> counts(n);
+  scene.closest(rays, {.t = t});
+  scene.count(rays, counts);
+  const AllHits all = scene.all(rays);
+  std::size_t n_hits = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    std::vector<double> expected(&whole.t[whole.splits[i]], &whole.t[whole.splits[i + 1]]);
+    std::erase_if(expected, [&](double e) { return !(e > t_min[i] && e < t_max[i]); });
+    const std::vector<double> found(&all.t[all.splits[i]], &all.t[all.splits[i + 1]]);
+    ASSERT_EQ(found, expected) << i;
+    ASSERT_EQ(counts[i], expected.size()) << i;
+    ASSERT_EQ(t[i], expected.empty() ? kInfinity : expected.front()) << i;
+    n_hits += expected.size();
+  }
+  EXPECT_GT(n_hits, 2000u);
+}
+
 // Whether floats put the start before or behind the surface: what lies behind it in double is none.
 TEST_P(Doubles, NoClosestHitLiesBehindTheStart) {
   std::mt19937 random(kSeed);

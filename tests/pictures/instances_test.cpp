@@ -247,19 +247,19 @@ TEST(Instances, AreRefusedWhereTheyAreNotKnown) {
   };
   RenderOptions options = exact_options(16, 12);
   options.precision = Precision::float64;
-  EXPECT_NE(refused(options).find("--instances flat"), std::string::npos);
+  EXPECT_NE(refused(options).find("instances flat"), std::string::npos);
   options = exact_options(16, 12);
   options.traversal = Traversal::binary;
-  EXPECT_NE(refused(options).find("--instances flat"), std::string::npos);
+  EXPECT_NE(refused(options).find("instances flat"), std::string::npos);
   options = exact_options(16, 12);
   options.channels = {"cost"};
-  EXPECT_NE(refused(options).find("--instances flat"), std::string::npos);
+  EXPECT_NE(refused(options).find("instances flat"), std::string::npos);
   const Ray ray{{0, 0, 9}, 0, {0, 0, -1}, 100};
   for (const auto& [walk, precision] :
        {std::pair{Traversal::binary, Precision::float32}, {Traversal::automatic, Precision::float64}})
     EXPECT_NE(refusal([&] {
                 renderer.trace(std::span(&ray, 1), false, 1, walk, precision);
-              }).find("--instances flat"),
+              }).find("instances flat"),
               std::string::npos);
   EXPECT_FALSE(renderer.render(exact_options(16, 12)).rgb.empty());
 }

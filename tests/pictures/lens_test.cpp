@@ -75,6 +75,31 @@ TEST(Lens, WithoutAFocusThatOfWhatItLooksAt) {
                         Renderer(Scene{std::move(left_out)}, {}, device_of()).render(options).rgb));
 }
 
+// A lens of the camera that a program asks for, in place of the scene's own, which has none.
+TEST(Lens, ThatOfACameraGivenWithThePicture) {
+  const scene::Scene with = edge_at(9, false);
+  scene::Scene without = with;
+  without.camera->aperture = without.camera->focus = 0;
+  RenderOptions options = exact_options(kWidth, kHeight, 1);
+  options.samples = 64;
+  const auto rendered = [&](const scene::Scene& s) {
+    return Renderer(Scene{scene::Scene(s)}, {}, device_of()).render(options).rgb;
+  };
+  const std::vector<float> wanted = rendered(with), sharp = rendered(without);
+  ASSERT_NE(wanted, sharp);
+  options.camera = Camera{.from = {0, 0, 0},
+                          .at = {0, 0, -1},
+                          .up = {0, 1, 0},
+                          .fov = 2 * std::atan(0.5 * kHeight / kWidth) * 180 / std::numbers::pi,
+                          .aperture = kAperture,
+                          .focus = kFocus};
+  const std::vector<float> given = rendered(without);
+  ASSERT_EQ(given.size(), wanted.size());
+  for (std::size_t i = 0; i < given.size(); ++i) EXPECT_NEAR(given[i], wanted[i], 1e-6) << i;
+  options.camera->aperture = 0;
+  EXPECT_EQ(rendered(with), rendered(without));
+}
+
 TEST(Lens, AViewGivesOneAndTakesItAway) {
   const Scene scene{edge_at(9, false)};
   const PreparedScene prepared{scene};

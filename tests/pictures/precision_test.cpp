@@ -229,15 +229,15 @@ TEST_P(Precision64, WhatItCannotDoIsRefused) {
   for (const Traversal t : {Traversal::wide, Traversal::packet, Traversal::batch}) {
     RenderOptions o = double_options;
     o.traversal = t;
-    EXPECT_TRUE(fails([&] { (void)renderer.render(o); }, "--traversal", ErrorCode::usage));
-    EXPECT_TRUE(fails([&] { (void)renderer.trace({}, false, 1, t, Precision::float64); }, "--traversal",
+    EXPECT_TRUE(fails([&] { (void)renderer.render(o); }, "traversal", ErrorCode::usage));
+    EXPECT_TRUE(fails([&] { (void)renderer.trace({}, false, 1, t, Precision::float64); }, "traversal",
                       ErrorCode::usage));
   }
   RenderOptions odprt = double_options, memory = double_options;
   odprt.mode = Mode::odprt;
   memory.device_memory = 1 << 30;
   EXPECT_TRUE(fails([&] { (void)renderer.render(odprt); }, "odprt", ErrorCode::usage));
-  EXPECT_TRUE(fails([&] { (void)renderer.render(memory); }, "--device-memory", ErrorCode::usage));
+  EXPECT_TRUE(fails([&] { (void)renderer.render(memory); }, "device memory", ErrorCode::usage));
   (void)renderer.render(double_options);
   EXPECT_EQ(statistics_of(renderer).at("mode").at("precision"), "double");
   EXPECT_EQ(statistics_of(renderer).at("mode").at("traversal"), "binary");

@@ -4,6 +4,7 @@
 
 #include "base/local_space.h"
 #include "scene/import/load.h"
+#include "scene/model/frame.h"
 #include "scene/scratch.h"
 
 namespace kdray::scene {
@@ -92,6 +93,26 @@ TEST(Json, ColoursMayBeWrittenAsTheWebDoes) {
   EXPECT_NEAR(s.ambient.y, 0.2158605, 1e-6);  // 128 of 255 in sRGB, as linear light
   EXPECT_EQ(s.lights[0].color, vec3(1));
   EXPECT_EQ(s.materials.back().diffuse, vec3(0, 0.5, 0));
+}
+
+// A plane without end is made to reach a hundred times as far as all else.
+TEST(Json, ACameraThatIsMadeUpLooksAtWhatStandsOnAPlane) {
+  const auto seen = [](const std::string& plane, const std::string& others) {
+    Scene s = read(R"({"objects": [)" + plane + others + "]}");
+    frame_scene(s);
+    return s;
+  };
+  const std::string balls = R"({"type": "sphere", "center": [0, 1, 0], "radius": 1},
+                               {"type": "sphere", "center": [3, 1, 0], "radius": 1})";
+  const std::string plane = R"({"type": "plane", "point": [0, 0, 0], "normal": [0, 1, 0]})";
+  const Scene with = seen(plane + ", ", balls), without = seen("", balls);
+  EXPECT_GT(with.bounds().hi.x, 100);
+  EXPECT_NEAR(with.framing.box.hi.x, without.framing.box.hi.x, 1e-9);
+  EXPECT_LT(glm::length(with.camera->from - without.camera->from), 1);
+  EXPECT_FALSE(seen(plane, "").framing.box.empty());
+  const Scene given =
+      seen(R"({"type": "plane", "point": [0, 0, 0], "normal": [0, 1, 0], "extent": 50}, )", balls);
+  EXPECT_NEAR(given.framing.box.hi.x, 50, 1e-9);
 }
 
 TEST(Json, TakesAnEmptyScene) {

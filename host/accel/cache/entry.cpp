@@ -32,7 +32,9 @@ std::optional<MappedFile> map(int descriptor) {
 }  // namespace
 
 std::optional<MappedFile> map_file(const std::filesystem::path& file) {
-  // O_NONBLOCK: the file may be a pipe, whose other end would be waited for.
+  // A pipe is neither waited for (O_NONBLOCK) nor opened, which would end whoever writes into it.
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) return std::nullopt;
   const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) return std::nullopt;
   std::optional<MappedFile> mapped = map(descriptor);

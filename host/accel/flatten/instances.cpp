@@ -195,7 +195,8 @@ PlacedInstances place_instances(std::span<const scene::Instance> instances, std:
     throw Error(
         ErrorCode::input,
         fmt::format(
-            "instance {} is too small or too large beside the scene for single precision; leave it out",
+            "instance {} of all in the scene is too small or too large beside the rest for single precision; "
+            "leave out the one that is",
             unsound.load()));
   for (const Box& box : placed.bounds) placed.all.grow(box);
   placed.widen = widen;

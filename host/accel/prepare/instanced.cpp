@@ -322,7 +322,7 @@ void refuse_instances(const Prepared& scene, const char* what) {
   if (!scene.flat.instances.empty())
     throw Error(ErrorCode::usage,
                 fmt::format("the scene has {} instances of meshes, which {} can't follow; "
-                            "load it with --instances flat, add copies, or ask about it in double geometry",
+                            "load it with instances flat, add copies, or ask about it in double geometry",
                             scene.counts.instances, what));
 }
 

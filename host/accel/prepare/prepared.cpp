@@ -91,13 +91,13 @@ Prepared prepare_within(const scene::Scene& scene, const scene::Geometry& geomet
 }  // namespace
 
 std::string warning_of_coarser(std::uint64_t bytes, std::uint64_t most_bytes) {
-  return fmt::format("the tree is coarser, so that the scene takes {} (--memory {}): tracing is slower",
+  return fmt::format("the tree is coarser, so that the scene takes {}, of {} that it may: tracing is slower",
                      in_option(bytes), in_option(most_bytes));
 }
 
 void refuse_size(std::uint64_t least_bytes, std::uint64_t most_bytes) {
   throw Error(ErrorCode::out_of_memory,
-              fmt::format("the scene takes {} at least; --memory {} is too little for it",
+              fmt::format("the scene takes {} at least; a memory of {} is too little for it",
                           in_option(least_bytes), in_option(most_bytes)));
 }
 

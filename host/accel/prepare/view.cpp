@@ -14,14 +14,15 @@ void light_anew(Prepared& scene) {
   scene.features = flatten::features_in_light(scene.features, scene.settings);
 }
 
-void take_out_sky(Prepared& scene) {
+void take_out_background(Prepared& scene) {
+  scene.settings.background = vec3(0);
   scene.settings.sky = {};
   scene.flat.sky = {}, scene.flat.sky_colors = {};
 }
 
 // Keeps what maps cut out, since that covers nothing, and removes all else of them.
-void keep_holes(Prepared& white) {
-  for (scene::MaterialMaps& maps : white.settings.texturing.material_maps)
+void keep_holes(Prepared& plain) {
+  for (scene::MaterialMaps& maps : plain.settings.texturing.material_maps)
     maps = {.alpha = maps.alpha,
             .cutoff = maps.cutoff,
             .base = maps.base,
@@ -44,21 +45,20 @@ Prepared seen(const Prepared& prepared, const scene::View& view, double aspect, 
   return changed;
 }
 
-Prepared coverage_of(const Prepared& prepared) {
+Prepared shining(const Prepared& prepared, const vec3& emission, bool before_background) {
   constexpr flatten::Features kOfMaterials =
       KDRAY_FEATURE_REFLECT | KDRAY_FEATURE_TRANSMIT | KDRAY_FEATURE_SPECULAR | KDRAY_FEATURE_DIFFUSE;
-  Prepared white = prepared;
-  for (scene::Material& m : white.settings.materials) m = {.emission = vec3(1), .maps = m.maps};
-  white.settings.background = vec3(0);
-  take_out_sky(white);
-  white.settings.framing.floor = {};
-  white.settings.lights.clear();
-  keep_holes(white);
-  white.flat.materials = flatten::pack_materials(white.settings);
-  white.flat.material_maps = flatten::pack_material_maps(white.settings);
-  white.features &= ~kOfMaterials;
-  light_anew(white);
-  return white;
+  Prepared plain = prepared;
+  for (scene::Material& m : plain.settings.materials) m = {.emission = emission, .maps = m.maps};
+  if (!before_background) take_out_background(plain);
+  plain.settings.framing.floor = {};
+  plain.settings.lights.clear();
+  keep_holes(plain);
+  plain.flat.materials = flatten::pack_materials(plain.settings);
+  plain.flat.material_maps = flatten::pack_material_maps(plain.settings);
+  plain.features &= ~kOfMaterials;
+  light_anew(plain);
+  return plain;
 }
 
 }  // namespace kdray::prepare

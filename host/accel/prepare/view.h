@@ -19,8 +19,9 @@ Prepared seen(const Prepared& prepared, const scene::View& view, double aspect,
 // lights, `instead` of these, or else the scene itself.
 Prepared in_studio(const Prepared& prepared, bool instead = false);
 
-// Returns the scene with everything in it shining white, on black: a picture is then the share of each pixel
-// that is covered, when rays go no further than to what they hit first.
-Prepared coverage_of(const Prepared& prepared);
+// Returns the scene with everything in it shining in one colour and reflecting nothing, before its own
+// background or black. In a picture of depth 1, white on black is what share of each pixel is covered; black
+// before the background is what the background itself adds to each pixel.
+Prepared shining(const Prepared& prepared, const vec3& emission, bool before_background);
 
 }  // namespace kdray::prepare

@@ -21,11 +21,23 @@ namespace kdray::cli {
 namespace {
 
 constexpr std::string_view kFileKeys[] = {"kdray_camera_path", "interpolation", "keys"};
-constexpr std::string_view kCameraKeys[] = {"frame", "from", "at", "up", "fov"};
+constexpr std::string_view kCameraKeys[] = {"frame", "from",   "at",       "up",   "fov",
+                                            "ortho", "hither", "aperture", "focus"};
 constexpr int kMostFrame = 999999;
+
+struct Own {
+  std::string_view key;
+  double Camera::*value;
+};
+constexpr Own kOwnKeys[] = {{"ortho", &Camera::ortho_width},
+                            {"hither", &Camera::hither},
+                            {"aperture", &Camera::aperture},
+                            {"focus", &Camera::focus}};
 
 // Returns why no picture can be made by this camera; null: one can.
 const char* fault_in(const Camera& c) {
+  for (const Own& own : kOwnKeys)
+    if (!(c.*own.value >= 0)) return "ortho, hither, aperture or focus is below 0";
   scene::Camera camera;
   camera.from = {c.from[0], c.from[1], c.from[2]};
   camera.at = {c.at[0], c.at[1], c.at[2]};
@@ -45,6 +57,8 @@ Camera camera_of_key(const scene::JsonNode& node) {
   camera.at = vector(node["at"]);
   if (const auto up = node.find("up")) camera.up = vector(*up);
   if (const auto fov = node.find("fov")) camera.fov = fov->number_between(1e-3, 179.9);
+  for (const Own& own : kOwnKeys)
+    if (const auto value = node.find(own.key)) camera.*own.value = value->number_between(0, 1e30);
   if (const char* const fault = fault_in(camera)) throw node.error(fault);
   return camera;
 }
@@ -68,9 +82,15 @@ CameraPath::CameraPath(const std::filesystem::path& file) : file_(file.string())
     const double frame = node["frame"].integer(0, kMostFrame);
     if (!keys_.empty() && frame <= keys_.back().frame)
       throw node.error("the frame is not behind that of the key before");
-    keys_.push_back(
-        {frame,
-         {c.from[0], c.from[1], c.from[2], c.at[0], c.at[1], c.at[2], c.up[0], c.up[1], c.up[2], c.fov}});
+    for (std::size_t k = 0; k < kOwn; ++k) {
+      const bool has = node.find(kOwnKeys[k].key).has_value();
+      if (!keys_.empty() && has != has_[k])
+        throw node.error(fmt::format("'{}' is in some keys and not in others", kOwnKeys[k].key));
+      has_[k] = has;
+    }
+    keys_.push_back({frame,
+                     {c.from[0], c.from[1], c.from[2], c.at[0], c.at[1], c.at[2], c.up[0], c.up[1], c.up[2],
+                      c.fov, c.ortho_width, c.hither, c.aperture, c.focus}});
   }
   if (keys_.empty()) throw root["keys"].expected("one key at least");
 }
@@ -88,7 +108,7 @@ double CameraPath::slope(std::size_t key, std::size_t value) const {
   return (of_side(key - 1) * after + of_side(key) * before) / (before + after);
 }
 
-Camera CameraPath::at(int frame) const {
+Camera CameraPath::at(int frame, const Camera& own) const {
   const auto above = std::upper_bound(keys_.begin(), keys_.end(), static_cast<double>(frame),
                                       [](double f, const Key& key) { return f < key.frame; });
   Values v;
@@ -110,8 +130,13 @@ Camera CameraPath::at(int frame) const {
       v[k] = a.values[k] + t * (in + t * ((3 * step - 2 * in - out) + t * (in + out - 2 * step)));
     }
   }
-  const Camera camera{
-      .from = {v[0], v[1], v[2]}, .at = {v[3], v[4], v[5]}, .up = {v[6], v[7], v[8]}, .fov = v[9]};
+  Camera camera = own;
+  camera.from = {v[0], v[1], v[2]};
+  camera.at = {v[3], v[4], v[5]};
+  camera.up = {v[6], v[7], v[8]};
+  camera.fov = v[9];
+  for (std::size_t k = 0; k < kOwn; ++k)
+    if (has_[k]) camera.*kOwnKeys[k].value = v[kPlaced + k];
   if (const char* const fault = fault_in(camera))
     throw input_error(file_, 0, fmt::format("between its keys, at frame {}: {}", frame, fault),
                       "add a key there");

@@ -2,7 +2,8 @@
 //         curve through them (docs/cli.md has the form).
 // Shape   { "kdray_camera_path": 1, "interpolation": "smooth", "keys": [{"frame": 0, "from": [x, y, z], "at":
 //         ..., "up": ..., "fov": degrees}, ...] }
-//         Before the first key and after the last the camera stands still.
+//         Keys may have "ortho", "hither", "aperture" and "focus", each all or none: else those are the
+//         scene's. Before the first key and after the last the camera stands still.
 // Why     Each frame's camera follows from the file and the frame's number alone, so that all processes that
 //         render a sequence see the same.
 // Errors  kdray::Error, ErrorCode::input: the file, the value's place in it, what is wrong.
@@ -23,10 +24,11 @@ class CameraPath {
  public:
   explicit CameraPath(const std::filesystem::path& file);
 
-  Camera at(int frame) const;
+  // `own` is the scene's, which has what no key has.
+  Camera at(int frame, const Camera& own = {}) const;
 
  private:
-  static constexpr std::size_t kValues = 10;  // from, at, up, fov
+  static constexpr std::size_t kPlaced = 10, kOwn = 4, kValues = kPlaced + kOwn;  // from, at, up, fov; others
   using Values = std::array<double, kValues>;
   struct Key {
     double frame;
@@ -37,6 +39,7 @@ class CameraPath {
 
   std::string file_;
   std::vector<Key> keys_;
+  std::array<bool, kOwn> has_ = {};  // of the others
   bool smooth_ = true;
 };
 

@@ -44,6 +44,11 @@ void add_file_options(CLI::App& app, RenderArgs& o) {
              o.write.transfer = parse_gamma("--gamma", text);
              o.gamma_given = true;
            });
+  add_text(app, "--exposure", "EV", "A PNG shows colours times 2^EV (as in 1.5; default 0)",
+           [&o](const std::string& text) {
+             o.write.exposure = parse_real("--exposure", text, -100, 100);
+             o.exposure_given = true;
+           });
   add_text(app, "--bits", shape_of(kBits), "Bits per channel of a PNG (default 8)",
            [&o](const std::string& text) {
              o.write.png_bits = parse_choice("--bits", text, kBits) == 1 ? 16 : 8;
@@ -52,7 +57,8 @@ void add_file_options(CLI::App& app, RenderArgs& o) {
   add_list(app, "--aov", "More channels, in the EXR or as files beside the PNG", kChannels,
            o.render.channels);
   add_path(app, "--stats", "Write the run's figures as JSON ('-': to standard output)", o.stats);
-  static constexpr std::array kOptions = {"--output", "--format", "--gamma", "--bits", "--aov", "--stats"};
+  static constexpr std::array kOptions = {"--output", "--format", "--gamma", "--exposure",
+                                          "--bits",   "--aov",    "--stats"};
   put_into_group(app, "Output", kOptions);
   add_loudness(app, o.quiet, o.verbose);
 }

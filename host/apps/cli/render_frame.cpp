@@ -61,7 +61,8 @@ bool makes_exr(const RenderArgs& o) {
 
 void tell_of_options_without_effect(const RenderArgs& o) {
   if (o.quiet || !makes_exr(o)) return;
-  if (o.gamma_given) say("--gamma has no effect: an EXR holds linear values");
+  for (const auto& [name, given] : {std::pair("--gamma", o.gamma_given), {"--exposure", o.exposure_given}})
+    if (given) say(fmt::format("{} has no effect: an EXR holds linear values", name));
   if (o.bits_given) say("--bits has no effect: an EXR holds floats");
 }
 
@@ -83,46 +84,36 @@ void check_memory(const RenderArgs& o, scene::RenderSettings asked) {
   check_picture_fits(picture, free_memory());
 }
 
-// A background can be taken out of the picture only where it is the same everywhere.
-void check_transparent(const RenderArgs& o, const scene::Scene& scene) {
-  if (o.view.transparent && scene.sky.kind != scene::SkyKind::none)
-    throw Error(ErrorCode::usage,
-                "--background transparent is for scenes whose background is one colour; this one's is not");
-}
-
-// Returns what share of each pixel eye rays hit anything in, for the samples that `render` asks for.
-std::vector<float> coverage(const PreparedScene& scene, const DeviceOptions& device,
-                            const RenderOptions& render) {
+// Returns what the picture's own eye rays alone see of the scene.
+std::vector<float> eye_rays_picture(const PreparedScene& scene, const DeviceOptions& device,
+                                    const RenderOptions& render) {
   RenderOptions options = render;
   options.depth = 1;
   options.channels.clear();
   options.progress = {};
   options.timeline = false;
   options.ledger.reset();
-  const Picture picture = Renderer(scene.coverage(), device).render(options);
-  std::vector<float> shares(picture.rgb.size() / 3);
-  for (std::size_t i = 0; i < shares.size(); ++i) shares[i] = std::clamp(picture.rgb[3 * i], 0.0f, 1.0f);
-  return shares;
+  return Renderer(scene, device).render(options).rgb;
 }
 
-// Takes out of each pixel what eye rays that hit nothing have brought from the background.
-void take_out_background(std::span<const float> coverage, std::span<const float, 3> background,
-                         std::vector<float>& rgb) {
-  for (std::size_t i = 0; i < coverage.size(); ++i)
-    for (std::size_t c = 0; c < 3; ++c) {
-      float& value = rgb[3 * i + c];
-      // Where nothing is covered nothing may be left, however the sum was rounded.
-      value = coverage[i] == 0 ? 0 : std::max(0.0f, value - (1 - coverage[i]) * background[c]);
-    }
-}
-
-// Returns the picture's alpha, where it is wanted, and takes the background out of its colours then.
+// Returns the picture's alpha, where it is wanted, and takes the background out of its colours then: what eye
+// rays that hit nothing have brought.
 std::vector<float> make_transparent(Picture& picture, const PreparedScene& scene, const DeviceOptions& device,
                                     const RenderArgs& o) {
   if (!o.view.transparent) return {};
-  std::vector<float> alpha = coverage(scene, device, o.render);
+  const std::vector<float> white = eye_rays_picture(scene.coverage(), device, o.render);
+  const bool has_sky = scene.settings().sky.kind != scene::SkyKind::none;
+  const std::vector<float> sky =
+      has_sky ? eye_rays_picture(scene.backdrop(), device, o.render) : std::vector<float>();
   const vec3& background = scene.settings().background;
-  take_out_background(alpha, std::span<const float, 3>(&background.x, 3), picture.rgb);
+  std::vector<float> alpha(white.size() / 3);
+  for (std::size_t i = 0; i < white.size(); ++i) {
+    const float covered = std::clamp(white[i], 0.0f, 1.0f);
+    alpha[i / 3] = covered;
+    float& value = picture.rgb[i];
+    // Where nothing is covered nothing may be left, however the sum was rounded.
+    value = covered == 0 ? 0 : std::max(0.0f, value - (has_sky ? sky[i] : (1 - covered) * background[i % 3]));
+  }
   return alpha;
 }
 
@@ -198,6 +189,8 @@ void take_plain_look(RenderArgs& o, const scene::Scene& scene, bool is_further) 
 
 FrameMaker::FrameMaker(RenderArgs& o, const First& first) : is_further_(first != nullptr) {
   if (leads()) check_files(o, files_);
+  if (const auto ledger = o.checkpoint.options(); ledger && leads())
+    files_.write_folder(o.checkpoint.share.empty() ? "--checkpoint" : "--share", ledger->folder);
   tell_of_options_without_effect(o);
   o.tree.binary_form = takes_binary_form(o.render.traversal, o.render.precision, o.render.channels);
   const bool in_shares = holds_shares(o);
@@ -205,7 +198,6 @@ FrameMaker::FrameMaker(RenderArgs& o, const First& first) : is_further_(first !=
       o.scene, o.tree, o.device, o.cache, o.quiet,
       [&](const scene::Scene& asked) {
         check_view_of(o.view, asked);
-        check_transparent(o, asked);
         if (leads()) check_files(o, files_, asked);
         check_memory(o, scene::settings_of(asked));
       },
@@ -215,7 +207,6 @@ FrameMaker::FrameMaker(RenderArgs& o, const First& first) : is_further_(first !=
   if (in_shares) take_plain_look(o, scene_->scene().settings(), is_further_);
   shown_ = in_look(scene_->scene(), o.view);
   seen_ = seen_by(o.view.view, *shown_, o, first);
-  check_transparent(o, seen_->settings());
   if (o.view.view.focus && !is_further_ && !o.quiet && leads() && !(seen_->settings().camera->aperture > 0))
     say("--focus has no effect: there is no lens; --aperture D puts one in");
   renderer_ = api::make_renderer(*seen_, scene_->device(), o.hooks);
@@ -234,6 +225,13 @@ void FrameMaker::turn(const RenderArgs& o, double turns) {
   }
   seen_ = seen_by(turntable_->after(turns), *shown_, o);
   renderer_->look(*seen_);
+}
+
+Camera FrameMaker::own_camera() const {
+  const auto& own = seen_->settings().camera;
+  if (!own) return {};
+  return {
+      .ortho_width = own->ortho_width, .hither = own->hither, .aperture = own->aperture, .focus = own->focus};
 }
 
 Picture FrameMaker::render(const RenderArgs& o) {
@@ -260,7 +258,7 @@ void FrameMaker::make(RenderArgs& o) {
   const image::Written written =
       write(std::move(picture), std::move(alpha), seen_->settings().names.get(), o);
   figures.seconds.write = step.seconds();
-  if (is_first_ && !is_further_ && !o.quiet) tell_of_view(*seen_, o.view);
+  if (is_first_ && !is_further_ && !o.quiet && !o.render.camera) tell_of_view(*seen_, o.view);
   if (is_first_) {
     scene_->keep();
     scene_->add_to(figures.seconds);

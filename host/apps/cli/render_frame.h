@@ -31,7 +31,7 @@ struct RenderArgs {
   SceneInput scene;
   std::string output, stats, timeline;
   bool quiet = false, verbose = false;
-  bool gamma_given = false, bits_given = false;
+  bool gamma_given = false, exposure_given = false, bits_given = false;
   CacheChoice cache;
   TreeOptions tree;
   DeviceOptions device;
@@ -56,6 +56,9 @@ class FrameMaker {
   const PreparedScene& seen() const { return *seen_; }
   // What is worth showing of its scene.
   const DBox& box() const;
+
+  // What a camera that goes along a path may keep of the scene's: parallel rays, hither and lens.
+  Camera own_camera() const;
 
   // Has the frames from the next one on seen after so many turns about the scene (Turntable).
   void turn(const RenderArgs& o, double turns);

@@ -211,12 +211,8 @@ PreparedScene in_look(const PreparedScene& scene, const ViewOptions& options) {
 void tell_of_view(const PreparedScene& scene, const ViewOptions& options) {
   const scene::Scene& settings = scene.settings();
   const View& view = options.view;
-  // Every NFF file has one.
-  const bool might_have_none = settings.name.find(".nff") == std::string::npos;
-  if (might_have_none && !settings.framing.camera && !settings.cameras.empty() && !view.camera && !view.from)
-    say(settings.cameras.size() == 1
-            ? std::string("using the file's camera 0")
-            : fmt::format("using the file's camera 0 of {} (--camera N)", settings.cameras.size()));
+  if (!settings.framing.camera && settings.cameras.size() > 1 && !view.camera && !view.from && !view.side)
+    say(fmt::format("using the file's camera 0 of {} (--camera N)", settings.cameras.size()));
   if (!settings.framing.studio || view.up || view.from) return;
   if (settings.framing.studio->up.z == 1) say("it stands on z, so that is up; else --up y");
   if (settings.framing.studio->perhaps_on_side) say("lies on its side? --up z");

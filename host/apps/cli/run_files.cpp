@@ -67,6 +67,13 @@ void RunFiles::write(const std::string& option, const fs::path& file) {
   outputs_.push_back(output);
 }
 
+void RunFiles::write_folder(const std::string& option, const fs::path& folder) {
+  const Known output{option, Place(folder)};
+  for (const Known& input : inputs_) check_apart(input, output, folder);
+  for (const Known& other : outputs_) check_apart(other, output, folder);
+  outputs_.push_back(output);
+}
+
 void RunFiles::write_picture(const std::string& option, const fs::path& file,
                              std::span<const std::string> channels, const image::WriteOptions& options) {
   if (file.empty()) return;
@@ -108,7 +115,9 @@ fs::path RunFiles::free_name(const fs::path& picture, std::span<const std::strin
 void check_stdout_takes_bytes(const std::string& option) {
   if (::isatty(STDOUT_FILENO))
     throw Error(ErrorCode::usage,
-                option + " '-': standard output is a terminal; send it to a file or program");
+                option +
+                    " '-': standard output is a terminal, as it is under mpirun; send it to a file or "
+                    "program, or name a file");
 }
 
 }  // namespace kdray::cli

@@ -72,11 +72,9 @@ void check_sequence(const RenderArgs& o) {
     refuse("a sequence has a file for each frame; standard input and output have room for one");
   if (!o.output.empty() && !o.write.format) image::format_for_writing(o.output);  // before it is numbered
   const View& v = o.view.view;
-  if (!o.checkpoint.camera_path.empty() &&
-      (v.camera || v.from || v.at || v.up || v.side || v.fov || v.ortho_width || v.aperture || v.focus))
+  if (!o.checkpoint.camera_path.empty() && (v.camera || v.from || v.at || v.up || v.side || v.fov))
     refuse(
-        "--camera-path says where the camera is; leave --from, --at, --up, --view, --fov, --camera, --ortho, "
-        "--aperture and --focus out");
+        "--camera-path says where the camera is; leave --from, --at, --up, --view, --fov and --camera out");
 }
 
 constexpr std::size_t kMostBytes = 1 << 16;
@@ -169,14 +167,13 @@ std::string name_of_picture(const RenderArgs& o, const std::string& scene) {
 }
 
 // Returns the arguments of one frame.
-RenderArgs args_of(const RenderArgs& o, const std::optional<CameraPath>& path, int number) {
+RenderArgs args_of(const RenderArgs& o, int number) {
   RenderArgs frame = o;
   frame.scene.file = numbered(o.scene.file, number, false);
   frame.output = name_of_picture(o, frame.scene.file);
   if (!o.output.empty() || !is_numbered(o)) frame.output = numbered(frame.output, number, true);
   if (!o.stats.empty()) frame.stats = numbered(o.stats, number, true);
   if (!o.timeline.empty()) frame.timeline = numbered(o.timeline, number, true);
-  if (path) frame.render.camera = path->at(number);
   if (o.checkpoint.fps) frame.scene.load.time = o.scene.load.time.value_or(0) + number / *o.checkpoint.fps;
   frame.render.ledger =
       o.checkpoint.options(fs::path(o.checkpoint.folder()) / fmt::format("frame-{}", number));
@@ -224,7 +221,7 @@ class Sequence {
 };
 
 void Sequence::make(int number) {
-  RenderArgs frame = args_of(o_, path_, number);
+  RenderArgs frame = args_of(o_, number);
   if (!maker_ || opened_.file != frame.scene.file || !(opened_.load == frame.scene.load)) {
     maker_.reset();
     const bool is_further = number != range_.first && (is_numbered(o_) || o_.checkpoint.fps);
@@ -241,6 +238,7 @@ void Sequence::make(int number) {
     }
     if (takes_over) tell_of_movement(number);
   }
+  if (path_) frame.render.camera = path_->at(number, maker_->own_camera());
   if (o_.checkpoint.turntable > 0) maker_->turn(frame, static_cast<double>(number) / o_.checkpoint.turntable);
   maker_->make(frame);
 }
@@ -249,7 +247,7 @@ void Sequence::make(int number) {
 // before. One that can't be read is an error for frames that lack what they would take over.
 void Sequence::find_first(int number) {
   for (; !first_ && !fault_ && first_number_ < number; ++first_number_) {
-    RenderArgs frame = args_of(o_, path_, first_number_);
+    RenderArgs frame = args_of(o_, first_number_);
     frame.quiet = true;
     try {
       const FrameMaker maker(frame);
@@ -312,7 +310,7 @@ void Sequence::render_shared() {
 // Makes the pictures that were made elsewhere, or removed; at least one, which shows whether the checkpoint
 // is this run's at all.
 void Sequence::make_what_is_missing() {
-  const auto is_there = [&](int number) { return fs::exists(args_of(o_, path_, number).output); };
+  const auto is_there = [&](int number) { return fs::exists(args_of(o_, number).output); };
   for (int number = range_.first; number <= range_.last; ++number)
     if (!is_there(number) || (number == range_.last && !maker_)) make(number);
 }

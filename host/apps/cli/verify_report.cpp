@@ -73,12 +73,14 @@ void tell_mesh(const Findings& f, Words& words) {
                   kinds.one_sided > 0 ? fmt::format("; {} with one side only (as a Moebius strip)",
                                                     counted(kinds.one_sided, "component"))
                                       : std::string()));
-  words.note(f.duplicates.doubled.size(), "doubled faces",
-             fmt::format("{} whose three corners another face has too: the first in the file is seen",
-                         f.duplicates.doubled.size()));
-  words.note(f.duplicates.overlapping.size(), "overlapping faces",
-             fmt::format("{} in one plane with common ground: the first in the file is seen there",
-                         counted(f.duplicates.overlapping.size(), "pair")));
+  words.note(
+      f.duplicates.doubled.size(), "doubled faces",
+      fmt::format("{} whose three corners another face has too: which one is seen is decided by a rounding",
+                  f.duplicates.doubled.size()));
+  words.note(
+      f.duplicates.overlapping.size(), "overlapping faces",
+      fmt::format("{} in one plane with common ground: which one is seen there is decided by a rounding",
+                  counted(f.duplicates.overlapping.size(), "pair")));
 }
 
 struct DefectName {

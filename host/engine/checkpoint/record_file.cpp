@@ -130,8 +130,9 @@ bool RecordFile::load(std::uint64_t offset, const Hash& content, std::span<layou
 namespace {
 
 Error cannot_write(const std::filesystem::path& file, int error) {
-  return input_error(file.string(), 0, fmt::format("can't be written ({})", std::strerror(error)),
-                     error == ENOSPC || error == EDQUOT ? "free some space, then go on with --resume" : "");
+  return input_error(
+      file.string(), 0, fmt::format("can't be written ({})", std::strerror(error)),
+      error == ENOSPC || error == EDQUOT ? "free some space, then go on from what is kept" : "");
 }
 
 }  // namespace

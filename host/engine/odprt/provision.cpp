@@ -77,9 +77,10 @@ std::size_t work_of(const Provision& p) {
 Error too_little(const Request& request, std::size_t needed) {
   return Error(
       ErrorCode::out_of_memory,
-      fmt::format("--device-memory {} is too little for this scene: it takes {}M at least; take more, or a "
-                  "smaller picture",
-                  request.device_memory, (needed >> 20) + 1));
+      fmt::format(
+          "a device memory of {} is too little for this scene: it takes {}M at least; take more, or a "
+          "smaller picture",
+          request.device_memory, (needed >> 20) + 1));
 }
 
 // The film gets a part of a queue's memory, its other buffers what they take, the parts the rest. Nothing,

@@ -9,21 +9,36 @@
 
 namespace kdray::query {
 
-// Where the ray begins: not so far off that it had to be moved to the scene.
-std::optional<LocalLine> ExactRays::line_of(std::size_t i) const {
-  const dvec3 origin = rays_->origin(i), direction = rays_->direction(i);
-  const double t_min = rays_->t_min(i);
-  if (fault_of(origin, direction, t_min, rays_->t_max(i)) != nullptr || rays_->mask(i) == 0)
-    return std::nullopt;
-  std::optional<LocalLine> line = context_->frame.line(origin, direction, true);
-  if (!line || line->ahead != 0) return std::nullopt;
-  if (t_min != 0) line->origin += std::scalbn(t_min, -line->exponent) * line->direction;
-  return line;
+namespace {
+
+constexpr double kFarthest = 0x1p100;  // in local lengths: no scene reaches as far
+
+// Where to look for what a line crosses above t_min, in multiples of its direction: a little before, since
+// the place there is rounded, and no farther back than a scene may reach from where a line begins.
+double start_of(const LocalLine& line, double t_min) {
+  constexpr double kBefore = 0x1p-20, kReach = 16 * kLocalReach;
+  const double least = t_min < 0 ? -kReach / largest_component(line.direction) : 0;
+  return std::max(std::scalbn(t_min, -line.exponent) - line.ahead - kBefore, least);
 }
 
-bool ExactRays::begins_near(std::size_t i) const {
-  const std::optional<LocalLine> line = line_of(i);
-  return line && !context_->frame.is_outside(line->origin) && scene_.is_near(line->origin);
+}  // namespace
+
+std::optional<LocalLine> ExactRays::line_of(std::size_t i) const {
+  const dvec3 origin = rays_->origin(i), direction = rays_->direction(i);
+  if (fault_of(origin, direction, rays_->t_min(i), rays_->t_max(i)) != nullptr || rays_->mask(i) == 0)
+    return std::nullopt;
+  return context_->frame.line(origin, direction, true);
+}
+
+bool ExactRays::is_near(const LocalLine& line, double t) const {
+  const double local = std::scalbn(t, -line.exponent) - line.ahead;
+  if (!(std::abs(local) <= kFarthest)) return false;
+  const dvec3 place = line.origin + local * line.direction;
+  return !context_->frame.is_outside(place) && scene_.is_near(place);
+}
+
+bool ExactRays::has_end_near(std::size_t i, const LocalLine& line) const {
+  return is_near(line, rays_->t_min(i)) || is_near(line, rays_->t_max(i));
 }
 
 bool ExactRays::is_seen(const ExactHit& hit, std::uint32_t mask) const {
@@ -33,23 +48,22 @@ bool ExactRays::is_seen(const ExactHit& hit, std::uint32_t mask) const {
   return (context_->table.mask_of(number_of(flat, hit.ref)) & mask) != 0;
 }
 
-void ExactRays::all_hits(std::size_t i, std::vector<ExactHit>& hits) const {
-  const LocalLine line = *line_of(i);
-  const double t_min = rays_->t_min(i), t_max = rays_->t_max(i);
+void ExactRays::cross(std::size_t i, const LocalLine& line, std::vector<ExactHit>& hits) const {
+  const double start = start_of(line, rays_->t_min(i));
+  scene_.cross(line.origin + start * line.direction, line.direction, hits);
   const std::uint32_t mask = rays_->mask(i);
-  scene_.cross(line.origin, line.direction, hits);
-  // One in the start point counts where t_min is 0.
   std::erase_if(hits, [&](ExactHit& hit) {
-    if (t_min != 0 && hit.t == 0) return true;
-    hit.t = t_min + std::scalbn(hit.t, line.exponent);
-    return !(hit.t < t_max) || (context_->has_masks() && !is_seen(hit, mask));
+    hit.t = distance(i, line, {hit.t + start, hit.u, hit.v, hit.ref, hit.instance});
+    return !(hit.t < rays_->t_max(i)) || (context_->has_masks() && !is_seen(hit, mask));
   });
 }
 
-double ExactRays::distance(std::size_t i, std::uint32_t ref, std::uint32_t instance, float t) const {
-  const std::optional<LocalLine> line = context_->frame.line(rays_->origin(i), rays_->direction(i), true);
-  if (!line) return t;  // it meets nothing
-  return distance(i, *line, {t, 0, 0, ref, instance});
+void ExactRays::all_hits(std::size_t i, const LocalLine& line, std::vector<ExactHit>& hits) const {
+  cross(i, line, hits);
+  const double t_min = rays_->t_min(i);
+  // One in the start point counts where t_min is 0.
+  if (t_min != 0) std::erase_if(hits, [&](const ExactHit& hit) { return hit.t <= t_min; });
+  scene_.sort(hits);
 }
 
 double ExactRays::distance(std::size_t i, const LocalLine& line, const ExactHit& about) const {
@@ -57,30 +71,29 @@ double ExactRays::distance(std::size_t i, const LocalLine& line, const ExactHit&
   return std::max(std::scalbn(line.ahead + at, line.exponent), rays_->t_min(i));
 }
 
-std::optional<ExactHit> ExactRays::closest(std::size_t i, const ExactHit& found) const {
-  const std::optional<LocalLine> line = context_->frame.line(rays_->origin(i), rays_->direction(i), true);
+std::optional<ExactHit> ExactRays::closest(std::size_t i, const std::optional<ExactHit>& found) const {
+  const double t_min = rays_->t_min(i), t_max = rays_->t_max(i);
+  if (!found && t_min == 0 && t_max == HUGE_VAL) return std::nullopt;
+  const std::optional<LocalLine> line =
+      found ? context_->frame.line(rays_->origin(i), rays_->direction(i), true) : line_of(i);
   if (!line) return std::nullopt;
-  ExactHit hit = found;
-  hit.t = distance(i, *line, found);
-  const double from_start = std::scalbn(hit.t - rays_->t_min(i), -line->exponent);
-  const bool is_near = !(from_start * largest_component(line->direction) > ExactScene::kNear);
-  return is_near || !allows(i, hit.t) ? closest_anew(i, *line) : hit;
+  std::optional<ExactHit> hit = found;
+  if (hit) hit->t = distance(i, *line, *hit);
+  // Floats can't tell what lies within kNear of an end of the ray.
+  const double longest = largest_component(line->direction);
+  const auto are_apart = [&](double t, double end) {
+    return std::scalbn(end - t, -line->exponent) * longest > ExactScene::kNear;
+  };
+  const bool in_doubt = (hit && !(are_apart(t_min, hit->t) && hit->t < t_max)) ||
+                        (t_min != 0 && is_near(*line, t_min)) ||
+                        (!(hit && are_apart(hit->t, t_max)) && is_near(*line, t_max));
+  return in_doubt ? closest_anew(i, *line) : hit;
 }
 
 std::optional<ExactHit> ExactRays::closest_anew(std::size_t i, const LocalLine& line) const {
-  // From a little before t_min, since the place there is rounded.
-  constexpr double kBefore = 0x1p-20;
-  const double start = std::max(std::scalbn(rays_->t_min(i), -line.exponent) - line.ahead - kBefore, 0.0);
   std::vector<ExactHit> hits;
-  scene_.cross(line.origin + start * line.direction, line.direction, hits);
-  for (ExactHit& hit : hits) {
-    hit.t += start;
-    hit.t = distance(i, line, hit);
-  }
-  const std::uint32_t mask = rays_->mask(i);
-  std::erase_if(hits, [&](const ExactHit& hit) {
-    return !allows(i, hit.t) || (context_->has_masks() && !is_seen(hit, mask));
-  });
+  cross(i, line, hits);
+  std::erase_if(hits, [&](const ExactHit& hit) { return hit.t <= rays_->t_min(i); });
   if (hits.empty()) return std::nullopt;
   scene_.sort(hits);
   return hits.front();
@@ -91,8 +104,9 @@ void ExactRays::count(std::size_t first, std::span<std::uint32_t> counts,
   for_each_slow_grain(counts.size(), cancel, [&](std::size_t begin, std::size_t end) {
     std::vector<ExactHit> hits;
     for (std::size_t i = begin; i < end; ++i) {
-      if (!begins_near(first + i)) continue;
-      all_hits(first + i, hits);
+      const std::optional<LocalLine> line = line_of(first + i);
+      if (!line || !has_end_near(first + i, *line)) continue;
+      all_hits(first + i, *line, hits);
       counts[i] = static_cast<std::uint32_t>(hits.size());
     }
   });
@@ -106,8 +120,9 @@ ExactHits ExactRays::settle(std::size_t first, const LocalHits& found, std::uint
   for_each_slow_grain(n, cancel, [&](std::size_t begin, std::size_t end) {
     std::vector<ExactHit> hits;
     for (std::size_t i = begin; i < end; ++i) {
-      if (begins_near(first + i)) {
-        all_hits(first + i, hits);
+      const std::optional<LocalLine> line = line_of(first + i);
+      if (line && has_end_near(first + i, *line)) {
+        all_hits(first + i, *line, hits);
         exact.more[i] = hits.size() > max_hits;
         exact.put(i, std::span(hits).first(std::min<std::size_t>(hits.size(), max_hits)));
         continue;
@@ -115,8 +130,8 @@ ExactHits ExactRays::settle(std::size_t first, const LocalHits& found, std::uint
       hits.clear();
       for (std::size_t k = found.splits[i]; k < found.splits[i + 1]; ++k) {
         const std::uint32_t instance = found.instance.empty() ? kNoInstance : found.instance[k];
-        const double t = distance(first + i, found.primitive[k], instance, found.t[k]);
-        hits.push_back({t, found.u[k], found.v[k], found.primitive[k], instance});
+        hits.push_back({found.t[k], found.u[k], found.v[k], found.primitive[k], instance});
+        if (line) hits.back().t = distance(first + i, *line, hits.back());
       }
       scene_.sort(hits);
       exact.put(i, hits);

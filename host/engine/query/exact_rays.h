@@ -1,6 +1,5 @@
-// What    Decides exactly what floats leave open of a caller's rays of doubles in a scene of floats: all hits
-//         of rays that begin too near to a surface, t in double of the others, and closest hits whose t the
-//         ray doesn't allow.
+// What    Decides exactly what floats leave open of a caller's rays of doubles in a scene of floats: the hits
+//         of rays that begin or end too near to a surface, and t in double of the others.
 // Shape   Rays of floats don't come here, and a scene of doubles has double_scene.h. t is in the units of the
 //         caller's rays.
 // Threads As many calls at once as there are threads.
@@ -48,27 +47,28 @@ class ExactRays {
   ExactRays(const QueryContext& context, const RayArrays& rays)
       : context_(&context), rays_(&rays), scene_(context.scene()) {}
 
-  // Counts anew, of rays first and on, what those cross that begin near a surface.
+  // Counts anew, of rays first and on, what those cross that begin or end near a surface.
   void count(std::size_t first, std::span<std::uint32_t> counts, const std::optional<Cancel>& cancel) const;
 
   // All hits of rays first and on, from those that floats have found, which are named by reference.
   ExactHits settle(std::size_t first, const LocalHits& found, std::uint32_t max_hits,
                    const std::optional<Cancel>& cancel) const;
 
-  // t in double of a hit of ray i that floats have found at `t`, in multiples of the local direction.
-  double distance(std::size_t i, std::uint32_t ref, std::uint32_t instance, float t) const;
-
-  // The closest hit of ray i from the one that floats have found: with t in double; and found anew, by a walk
-  // on the host, where the ray doesn't allow that t, or it is so near to the start that floats can't tell
-  // what lies ahead. None: there is none.
-  std::optional<ExactHit> closest(std::size_t i, const ExactHit& found) const;
+  // The closest hit of ray i from the one that floats have found, if any, with t in double; and found anew,
+  // by a walk on the host, where that t is not between the ray's t_min and t_max or so near to t_min that
+  // floats can't tell what lies ahead, and where something is as near to a t_min that is not 0, or to t_max.
+  std::optional<ExactHit> closest(std::size_t i, const std::optional<ExactHit>& found) const;
 
  private:
+  // None for rays that mean nothing or meet nothing.
   std::optional<LocalLine> line_of(std::size_t i) const;
-  bool begins_near(std::size_t i) const;
-  void all_hits(std::size_t i, std::vector<ExactHit>& hits) const;
+  // Whether the line is too near to a surface there.
+  bool is_near(const LocalLine& line, double t) const;
+  bool has_end_near(std::size_t i, const LocalLine& line) const;
+  // What the ray crosses at t_min or above and below t_max, in no order.
+  void cross(std::size_t i, const LocalLine& line, std::vector<ExactHit>& hits) const;
+  void all_hits(std::size_t i, const LocalLine& line, std::vector<ExactHit>& hits) const;
   double distance(std::size_t i, const LocalLine& line, const ExactHit& about) const;
-  bool allows(std::size_t i, double t) const { return t > rays_->t_min(i) && t < rays_->t_max(i); }
   std::optional<ExactHit> closest_anew(std::size_t i, const LocalLine& line) const;
   bool is_seen(const ExactHit& hit, std::uint32_t mask) const;
 

@@ -119,11 +119,10 @@ void HitWriter::settle(Some& some, Changed& changed) const {
   for (std::size_t i = 0; i < some.hits.size(); ++i) {
     constexpr ExactHit kMiss{HUGE_VAL, 0, 0, kNoPrimitive, kNoInstance};
     const QueryHit& hit = some.hits[i];
-    ExactHit exact = kMiss;
-    if (!missed(hit)) {
-      const auto ref = static_cast<std::uint32_t>(hit.primitive);
-      exact = exact_->closest(some.ray + i, {hit.t, hit.u, hit.v, ref, some.instance(i)}).value_or(kMiss);
-    }
+    std::optional<ExactHit> found;
+    if (!missed(hit))
+      found = {hit.t, hit.u, hit.v, static_cast<std::uint32_t>(hit.primitive), some.instance(i)};
+    const ExactHit exact = exact_->closest(some.ray + i, found).value_or(kMiss);
     changed.hits[i] = {static_cast<float>(exact.t), static_cast<std::int32_t>(exact.ref),
                        static_cast<float>(exact.u), static_cast<float>(exact.v)};
     changed.instances[i] = exact.instance;

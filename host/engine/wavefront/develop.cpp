@@ -2,6 +2,7 @@
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
 #include <limits>
@@ -22,6 +23,18 @@ namespace kdray::wavefront {
 namespace {
 
 constexpr std::size_t kGrain = 3 << 15;  // sums to a task: 1 MiB of them and of the picture
+
+// Calls take(begin, end) for parts of [0, n), of `grain` elements or more. A queue's thread lasts as long as
+// a picture, and TBB makes an arena for each thread that has none, of which 2021.8 (Debian 12) never gives
+// some memory back: threads share one, which is left to the process, since they may outlive what is static.
+template <class Take>
+void in_shares(std::size_t n, std::size_t grain, const Take& take) {
+  static tbb::task_arena& arena = *new tbb::task_arena;
+  arena.execute([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain),
+                      [&](const auto& range) { take(range.begin(), range.end()); });
+  });
+}
 
 // Neighbouring tiles of one row.
 struct TileSpan {
@@ -59,8 +72,8 @@ void for_each_row(const layout::Frame& frame, std::span<const layout::u32> tiles
     for (std::size_t y = std::size_t{span.row} * frame.tile_height; y < end_y; ++y) take(x, y, end_x - x);
   };
   const std::vector<TileSpan> spans = spans_of(tiles);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, spans.size()), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i) take_span(spans[i]);
+  in_shares(spans.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) take_span(spans[i]);
   });
 }
 
@@ -108,14 +121,14 @@ class Developer {
 
 void develop(Films films, int samples, std::span<float> rgb) {
   const Developer developer(static_cast<std::uint32_t>(samples));
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rgb.size(), kGrain), [&](const auto& range) {
-    developer(films, range.begin(), rgb.subspan(range.begin(), range.size()));
+  in_shares(rgb.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    developer(films, begin, rgb.subspan(begin, end - begin));
   });
 }
 
 void add_up(Films films, std::span<layout::i64> sums) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sums.size(), kGrain), [&](const auto& range) {
-    add_pieces(films, range.begin(), sums.subspan(range.begin(), range.size()));
+  in_shares(sums.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    add_pieces(films, begin, sums.subspan(begin, end - begin));
   });
 }
 
@@ -136,11 +149,10 @@ void copy_tiles(const PlacedFilms& from, const layout::Frame& frame, std::span<c
 
 void copy_runs(const PlacedFilms& from, std::span<const layout::u32> runs, std::span<layout::i64> sums) {
   constexpr std::size_t kRun = KDRAY_SAMPLE_RUN;
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, runs.size(), kGrain / (3 * kRun)), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i)
-          add_pieces(from.films, from.at(runs[i] * kRun, 0), sums.subspan(3 * kRun * runs[i], 3 * kRun));
-      });
+  in_shares(runs.size(), kGrain / (3 * kRun), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      add_pieces(from.films, from.at(runs[i] * kRun, 0), sums.subspan(3 * kRun * runs[i], 3 * kRun));
+  });
 }
 
 }  // namespace kdray::wavefront

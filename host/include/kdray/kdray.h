@@ -3,7 +3,7 @@
 //         kdray offers it as kdray::kdray to CMake.
 // Shape   Only standard types cross this header. Classes are handles: cheap to move, not copyable.
 // Errors  Everything throws kdray::Error (kdray/error.h's codes: 1 input, 2 usage, 3 no device, 4 out of
-//         memory, 6 cancelled).
+//         memory, 6 cancelled), and std::bad_alloc where the process has no memory left.
 // Threads A Renderer serves one call at a time; different Renderers may be used from different threads.
 #pragma once
 
@@ -66,6 +66,9 @@ class PreparedScene {
   PreparedScene in_studio(bool instead = false) const;
   // The same shapes, white and shining on black: a picture of depth 1 is what share of each pixel they cover.
   PreparedScene coverage() const;
+  // The same shapes, black before the scene's background: a picture of depth 1 is what eye rays bring from
+  // the background into each pixel.
+  PreparedScene backdrop() const;
   const prepare::Prepared& prepared() const { return *prepared_; }
 
  private:

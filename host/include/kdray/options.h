@@ -198,8 +198,9 @@ struct RenderOptions {
   int ray_buffer = 0;  // ODPRT: rays that a buffer between queues holds for each slice; 0: chosen
   // ODPRT: the most that a device may hold; subtrees come and go; 0: no limit.
   std::uint64_t device_memory = 0;
-  bool timeline = false;                      // keep what Renderer::timeline() tells
-  std::vector<std::string> channels = {};     // of "depth", "normal", "primitive", "cost", "queue", "samples"
+  bool timeline = false;  // keep what Renderer::timeline() tells
+  std::vector<std::string> channels =
+      {};  // of "depth", "normal", "primitive", "instance", "cost", "queue" and "samples"
   std::function<void(double)> progress = {};  // called from the calling thread with the share done, 0 to 1
   std::optional<Camera> camera = {};          // in place of the scene's
   std::optional<Cancel> cancel = {};

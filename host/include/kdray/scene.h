@@ -3,11 +3,13 @@
 // Shape   A Scene is the program's description; commit() turns it into what queries see. Until the
 //         next commit() queries go on over what was committed, whatever is added, moved or removed
 //         meanwhile.
-// Errors  Everything throws kdray::Error. An array that is wrong is ErrorCode::input, and the message names
-//         the array and the element; nothing of the scene has changed then.
-// Threads One thread at a time adds, changes and commits. Any number may ask, also while it commits: they are
-//         answered from the state before until commit() returns. Nobody may ask what is destroyed
-//         meanwhile; what was moved from may be assigned to or destroyed, and nothing else.
+// Errors  Everything throws kdray::Error, and std::bad_alloc where the process has no memory left. An array
+//         that is wrong is ErrorCode::input, and the message names the array and the element; nothing of the
+//         scene has changed then.
+// Threads One thread at a time adds, changes, lists and commits. Any number may ask, also meanwhile: they are
+//         answered from the state before until commit() returns; name_of() and material_of() know what is
+//         there by now. Nobody may ask what is destroyed meanwhile; what was moved from may be assigned to or
+//         destroyed, and nothing else.
 #pragma once
 
 #include <array>
@@ -184,16 +186,17 @@ class Scene {
 
   // What each ray hits first. With the t of a hit as t_min the same ray finds what comes after just that hit.
   // Which surface comes first is decided in floats about the scene's centre; t of a ray of doubles is that of
-  // this surface in double, and a surface whose t is then not above t_min is none. (What remains: a surface
-  // within some 4e-6 of the scene's size ahead of the start of a ray of doubles may be passed, and of two
-  // that are as near to each other the farther one be found. count() and all() decide the former in double.)
+  // this surface in double, and lies between t_min and t_max. (What remains: a surface within some 4e-6 of
+  // the scene's size ahead of the start of a ray of doubles whose t_min is 0 may be passed, and of two that
+  // are as near to each other the farther one be found. count() and all() decide the former in double.)
   QueryReport closest(const Rays& rays, const HitsOut& out, const QueryOptions& options = {}) const;
-  // 1 for each ray that hits anything between t_min and t_max, else 0.
+  // 1 for each ray that hits anything between t_min and t_max, else 0. That is decided in floats, but for
+  // double geometry: a surface as near as that to either end of a ray of doubles may count or not.
   QueryReport any(const Rays& rays, const BytesOut& out, const QueryOptions& options = {}) const;
   // How many surfaces each ray crosses, and all of these crossings. Each counts once, at edges and vertices
   // too: a ray that begins and ends outside of a closed mesh crosses it an even number of times. A hit in the
   // start point (t = 0) counts when t_min is 0 and is left out when t_min is above it. Whether a crossing
-  // lies before or behind the start of a ray of doubles is decided by these doubles, for triangles exactly.
+  // lies before or behind an end of a ray of doubles is decided by these doubles, at 0 for triangles exactly.
   QueryReport count(const Rays& rays, const WordsOut& out, const QueryOptions& options = {}) const;
   AllHits all(const Rays& rays, const AllHitsOptions& options = {}) const;
 

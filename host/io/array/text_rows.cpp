@@ -82,8 +82,9 @@ class TextReader {
 
  private:
   void read_line(std::string_view line) {
+    line = line.substr(0, line.find('#'));
     Words words(line);
-    if (words.at_end() || line[line.find_first_not_of(kBlank)] == '#') return;
+    if (words.at_end()) return;
     if (!std::exchange(begun_, true) && is_header(line)) return;
     std::size_t n = 0;
     for (; !words.at_end(); ++n) {

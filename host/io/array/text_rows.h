@@ -1,5 +1,5 @@
-// What    Rows of numbers in a text: a line for each, with blanks, commas or semicolons between. A line that
-//         begins with # is a comment, and the first other one may be a header of words. UTF-8.
+// What    Rows of numbers in a text: a line for each, with blanks, commas or semicolons between. What follows
+//         a # is a comment, and the first line that is more may be a header of words. UTF-8.
 // Errors  kdray::Error, ErrorCode::input, with the line: what is no number, rows of different lengths.
 #pragma once
 

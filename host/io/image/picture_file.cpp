@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "base/error.h"
@@ -49,16 +50,18 @@ vec3 straight(const vec3& color, float alpha) {
   return alpha > 0 ? color / alpha : vec3(0);
 }
 
-PngPixels quantized(const Image& image, const Transfer& transfer, int bits) {
+PngPixels quantized(const Image& image, const WriteOptions& options) {
   const bool has_alpha = !image.alpha.empty();
+  const int bits = options.png_bits;
   PngPixels pixels{image.width, image.height, has_alpha ? 4 : 3, bits, {}};
   pixels.samples.resize(static_cast<std::size_t>(pixels.channels) * image.pixels.size());
   const double maximum = bits == 16 ? 65535 : 255;
-  const Quantizer quantize(transfer, bits == 16 ? 65535 : 255);
+  const auto brighter = static_cast<float>(std::exp2(options.exposure));
+  const Quantizer quantize(options.transfer, bits == 16 ? 65535 : 255);
   std::uint16_t* sample = pixels.samples.data();
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     const vec3 color = has_alpha ? straight(image.pixels[i], image.alpha[i]) : image.pixels[i];
-    for (int c = 0; c < 3; ++c) *sample++ = static_cast<std::uint16_t>(quantize(color[c]));
+    for (int c = 0; c < 3; ++c) *sample++ = static_cast<std::uint16_t>(quantize(color[c] * brighter));
     if (has_alpha) *sample++ = static_cast<std::uint16_t>(std::lround(image.alpha[i] * maximum));
   }
   return pixels;
@@ -74,7 +77,7 @@ std::string encode_color(const Image& image, const WriteOptions& options) {
   PngMeta meta;
   meta.color = options.transfer.srgb ? PngColor::srgb : PngColor::gamma;
   meta.gamma = options.transfer.gamma;
-  return encode_png(quantized(image, options.transfer, options.png_bits), meta);
+  return encode_png(quantized(image, options), meta);
 }
 
 void write_channels(const fs::path& file, const Image& image, std::span<const Channel> channels,
@@ -98,7 +101,17 @@ void check_shape(const Image& image, std::span<const Channel> channels, const Wr
   expect(image.alpha.empty() || image.alpha.size() == n_pixels, "alpha does not fit the picture");
   for (const Channel& channel : channels)
     expect(channel.values.size() == n_pixels, "a channel does not fit the picture");
+  expect(std::abs(options.exposure) <= 100, "exposure is not from -100 to 100");
   check(options.transfer);
+}
+
+// In an EXR a channel stands beside the colour, and beside a PNG it is a part of a file's name.
+void check_names(const fs::path& file, std::span<const Channel> channels) {
+  std::set<std::string> names = {"", "R", "G", "B", "A"};
+  for (const Channel& channel : channels)
+    if (!names.insert(exr_name(channel.name)).second || channel.name.find('/') != std::string::npos)
+      throw input_error(file.string(), 0, "a channel can't have the name '" + channel.name + "'",
+                        "give each one of its own that is no colour's");
 }
 
 }  // namespace
@@ -119,6 +132,7 @@ std::string encode_picture(PictureFormat format, const Image& image, std::span<c
 Written write_picture(const fs::path& file, const Image& image, std::span<const Channel> channels,
                       const WriteOptions& options) {
   const PictureFormat format = options.format ? *options.format : format_for_writing(file);
+  check_names(file, channels);
   Written written;
   written.nan_values = count_nan(image);
   write_file(file, encode_picture(format, image, channels, options));

@@ -30,6 +30,7 @@ using kdray::write_atomically;
 struct WriteOptions {
   Transfer transfer;
   int png_bits = 8;                          // 8 or 16
+  double exposure = 0;                       // a PNG shows colours times 2^exposure
   std::optional<PictureFormat> format = {};  // none: by the ending of the file's name
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "base/local_space.h"
 
@@ -49,13 +50,24 @@ double largest_side(const DBox& box) {
   return box.empty() ? 0 : largest_component(box.hi - box.lo);
 }
 
-void settle(const Unsettled::Wide& wide, const DBox& box, double size, Scene& scene) {
-  Disc& disc = scene.discs[wide.disc];
-  const Plane& plane = wide.plane;
-  disc.radius = plane.extent > 0 ? plane.extent : kFar * size;
-  if (plane.extent > 0 || box.empty()) return;
-  const dvec3 middle = box.center();
-  disc.center = middle - plane.normal * glm::dot(middle - plane.point, plane.normal);
+// Planes without end count by the point below the middle of all else: a camera that is made up looks at that,
+// and not at how far they were made to reach.
+void settle_planes(std::span<const Unsettled::Wide> planes, Scene& scene) {
+  const DBox box = size_of(scene);
+  bool have_end = true;
+  for (const auto& [plane, number] : planes) {
+    Disc& disc = scene.discs[number];
+    have_end &= plane.extent > 0;
+    if (plane.extent > 0)
+      disc.radius = plane.extent;
+    else if (!box.empty())
+      disc.center = box.center() - plane.normal * glm::dot(box.center() - plane.point, plane.normal);
+  }
+  if (have_end) return;
+  if (const DBox all = scene.bounds(); largest_side(all) > 0) scene.framing.box = all;
+  const double side = largest_side(box);
+  for (const auto& [plane, number] : planes)
+    if (!(plane.extent > 0)) scene.discs[number].radius = kFar * (side > 0 ? side : 1);
 }
 
 }  // namespace
@@ -117,11 +129,7 @@ void add_plane(Scene& part, const Plane& plane, std::size_t first_disc, Unsettle
 }
 
 void settle_solids(const Unsettled& unsettled, Scene& scene) {
-  if (!unsettled.planes.empty()) {
-    const DBox box = size_of(scene);
-    const double side = largest_side(box), size = side > 0 ? side : 1;
-    for (const Unsettled::Wide& wide : unsettled.planes) settle(wide, box, size, scene);
-  }
+  if (!unsettled.planes.empty()) settle_planes(unsettled.planes, scene);
   if (unsettled.lids.empty()) return;
   const double seal = kSeal * largest_side(scene.bounds());
   for (const Unsettled::Lid& lid : unsettled.lids) {

@@ -42,7 +42,10 @@ std::shared_ptr<const Picture> picture_of(const Pixels& pixels) {
     refuse_texture(fmt::format("picture: {}x{} pixels; textures have {} at most, and no side over {}", width,
                                height, kMostTexels, kLongestSide));
   if (data == nullptr) refuse_texture("picture: no data");
-  const std::size_t row = row_bytes == 0 ? std::size_t{width} * channels : row_bytes;
+  const std::size_t pixels_of_row = std::size_t{width} * channels;
+  const std::size_t row = row_bytes == 0 ? pixels_of_row : row_bytes;
+  if (row < pixels_of_row)
+    refuse_texture(fmt::format("picture: its rows of {} bytes are {} bytes apart", pixels_of_row, row));
   if (height > 1 && row > static_cast<std::size_t>(PTRDIFF_MAX) / height)
     refuse_texture(fmt::format("picture: {} rows, {} bytes apart, reach beyond any memory", height, row));
   Picture picture = blank_picture("a picture", width, height);

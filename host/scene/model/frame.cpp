@@ -216,8 +216,10 @@ void frame_scene(Scene& scene) {
 }
 
 void frame_scene(Scene& scene, const Framed& framed) {
-  const DBox& bounds = framed.bounds;
-  const DBox box = scene.camera || bounds.empty() ? bounds : worth_showing(scene, framed);
+  const DBox known = scene.framing.box;
+  const DBox box = !known.empty()                          ? known
+                   : scene.camera || framed.bounds.empty() ? framed.bounds
+                                                           : worth_showing(scene, framed);
   scene.framing = {.camera = !scene.camera,
                    .lights = scene.lights.empty() && !scene.unlit,
                    .box = box,
@@ -268,7 +270,8 @@ dvec3 nearest_axis(const dvec3& up) {
 
 void check(const Camera& camera) {
   if (const char* const fault = fault_of(camera))
-    throw Error(ErrorCode::usage, std::string("the view: ") + fault + "; give other --from, --at or --up");
+    throw Error(ErrorCode::usage,
+                std::string("the view: ") + fault + "; give another place to look from or at, or another up");
 }
 
 bool is_made_up(const Scene& scene, const View& view) {

@@ -159,7 +159,7 @@ struct Amount {
 void check_capacity(const Amount& all, const Scene& scene) {
   if (all.primitives >= KDRAY_REF_INDEX_MASK || all.vertices >= kNone || all.normals >= kNone)
     throw input_error(scene.name, 0, "copies of its meshes make 2^28 primitives or more",
-                      "leave --instances flat out, or ask about it in floats");
+                      "don't make instances flat, or ask about it in floats");
 }
 
 dmat4 matrix_of(const Instance& instance) {

@@ -109,7 +109,7 @@ struct Studio {
 // (frame.h).
 struct Framing {
   bool camera = false, lights = false;
-  DBox box;                           // of what is worth showing; empty for a scene of nothing
+  DBox box;                           // of what is worth showing, which a reader may know; empty: nothing
   std::optional<Studio> studio = {};  // that the scene is seen in
   Floor floor = {};                   // that the studio has for the view
   double illuminance = 0;             // of a glTF file's lights in the middle, before its exposure

@@ -90,7 +90,7 @@ TEST(Prepared, FitsTheMemoryItIsGiven) {
   EXPECT_LE(coarse.bytes(), less);
   EXPECT_GT(coarse.tree_nodes, 10u);  // coarser, but a tree
   ASSERT_EQ(coarse.settings.warnings.size(), 1u);
-  EXPECT_NE(coarse.settings.warnings[0].find("--memory"), std::string::npos);
+  EXPECT_NE(coarse.settings.warnings[0].find("tracing is slower"), std::string::npos);
   const Prepared enough = prepare(scene, {.memory_bytes = free.bytes()});
   EXPECT_EQ(enough.bytes(), free.bytes());
   EXPECT_TRUE(enough.settings.warnings.empty());

@@ -94,6 +94,13 @@ TEST_F(CheckpointTest, WhatChangesOnlyTimesIsNoOtherRun) {
   }
 }
 
+TEST_F(CheckpointTest, ThePictureAndItsFolderHaveDifferentNames) {
+  for (const std::string option : {"--checkpoint", "--share"})
+    EXPECT_TRUE(fails_with(render({"-o", folder / "x.png", option, folder / "x.png"}), 2,
+                           "--output and " + option + " are the same"));
+  EXPECT_FALSE(fs::exists(folder / "x.png"));
+}
+
 TEST_F(CheckpointTest, AnotherSceneOrOtherSettingsAreRefused) {
   KDRAY_NEED_DEVICE();
   ASSERT_TRUE(succeeds(go_on({})));
@@ -135,7 +142,7 @@ TEST_F(CheckpointTest, OptionsThatDoNotGoTogether) {
 
 TEST_F(CheckpointTest, AFolderThatCannotBeMade) {
   KDRAY_NEED_DEVICE();
-  EXPECT_TRUE(fails_with(render({"--checkpoint", scene}), 1, "can't be made"));
+  EXPECT_TRUE(fails_with(render({"--checkpoint", folder.put("file", "")}), 1, "can't be made"));
 }
 
 }  // namespace

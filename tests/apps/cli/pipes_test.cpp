@@ -55,6 +55,19 @@ TEST_F(PipesTest, DevicesAndPipesNeedNoEnding) {
   EXPECT_TRUE(succeeds(kdray({"render", scene, "-o", "/dev/null"})));
 }
 
+// Once, as a pipe can be: the cache doesn't look into it.
+TEST_F(PipesTest, AScenesPipeIsReadOnce) {
+  KDRAY_NEED_DEVICE();
+  const fs::path pipe = folder / "scene.nff";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::thread writer([&] { std::ofstream(pipe) << std::ifstream(scene).rdbuf(); });
+  const Outcome run = kdray({"render", pipe, "-q", "-o", folder / "b.png", "--cache", folder / "cache"});
+  writer.join();
+  ASSERT_TRUE(succeeds(run));
+  ASSERT_TRUE(succeeds(kdray({"render", scene, "-q", "-o", folder / "a.png"})));
+  EXPECT_EQ(folder.get("b.png"), folder.get("a.png"));
+}
+
 // A redirection that appends goes on where it was: the file is not replaced.
 TEST_F(PipesTest, StdoutByAnyNameIsStdout) {
   for (const char* const name : {"-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"})

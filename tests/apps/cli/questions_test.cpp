@@ -195,8 +195,8 @@ TEST(Questions, HitsTellInstancesThatAreKept) {
       asking.folder.put("p.npy", npy_of("<f8", std::vector<std::array<double, 3>>{{0.5, 0.5, 0.5}}));
   std::vector<std::string> nearest = {"trace",           scene,  "--instances", "kept",
                                       "--closest-point", points, "-o",          asking.folder / "n.npy"};
-  EXPECT_TRUE(fails_with(kdray(nearest), 2, "--instances flat"));
-  EXPECT_TRUE(fails_with(run(asking.floats, {"--traversal", "binary"}), 2, "--instances flat"));
+  EXPECT_TRUE(fails_with(kdray(nearest), 2, "instances flat"));
+  EXPECT_TRUE(fails_with(run(asking.floats, {"--traversal", "binary"}), 2, "instances flat"));
 }
 
 TEST(Questions, AllHitsGoToStdoutAsDash) {

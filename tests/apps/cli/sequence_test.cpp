@@ -170,6 +170,46 @@ TEST_F(SequenceTest, ATurntableGoesAlone) {
   EXPECT_TRUE(fails_with(render({"--turntable", "4", "-o", "-"}), 2, "a file for each frame"));
 }
 
+TEST_F(SequenceTest, ACameraPathKeepsTheRestOfTheCamera) {
+  KDRAY_NEED_DEVICE();
+  const fs::path still =
+      folder.put("still.json",
+                 R"({"kdray_camera_path": 1, "keys": [{"frame": 0, "from": [0, 0, 5], "at": [0, 0, 0]}]})");
+  const auto picture = [&](const std::string& scene, const Arguments& more) {
+    Arguments arguments{"render", scene, "--size", "40x30", "-q", "-o", more.empty() ? "w.exr" : "p%d.exr"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_TRUE(succeeds(kdray(arguments, {.folder = folder.path()})));
+    return folder.get(more.empty() ? "w.exr" : "p0.exr");
+  };
+  const Arguments along = {"--camera-path", still.string(), "--frames", "0..0"};
+  for (const std::string lens :
+       {R"("ortho": 4, "hither": 4.5)", R"("aperture": 0.5, "focus": 3)", R"("hither": 4.5)"}) {
+    const std::string name =
+        folder
+            .put("scene.json", R"({"camera": {"from": [0, 0, 5], "at": [0, 0, 0], )" + lens +
+                                   R"(}, "objects": [
+      {"type": "sphere", "center": [0, 0, 0], "radius": 1},
+      {"type": "sphere", "center": [0.3, 0, 2], "radius": 0.5}]})")
+            .string();
+    EXPECT_EQ(picture(name, along), picture(name, {})) << lens;
+  }
+  folder.put("plain.json", R"({"camera": {"from": [0, 0, 5], "at": [0, 0, 0]},
+                               "objects": [{"type": "sphere", "center": [0, 0, 0], "radius": 1}]})");
+  Arguments focused = along;
+  focused.insert(focused.end(), {"--aperture", "0.5", "--focus", "2"});
+  EXPECT_NE(picture("plain.json", focused), picture("plain.json", along));
+  const std::string keys = R"({"kdray_camera_path": 1, "keys": [
+      {"frame": 0, "from": [0, 0, 5], "at": [0, 0, 0], "aperture": 0.5, "focus": 2},
+      {"frame": 9, "from": [0, 0, 5], "at": [0, 0, 0], )";
+  const Arguments pulled = {"--camera-path",
+                            folder.put("f.json", keys + R"("aperture": 0.1, "focus": 3}]})").string(),
+                            "--frames", "0..0"};
+  EXPECT_EQ(picture("plain.json", pulled), picture("plain.json", focused));
+  folder.put("g.json", keys + R"("focus": 3}]})");
+  EXPECT_TRUE(fails_with(render({"--camera-path", folder / "g.json", "--frames", "0..0"}), 1,
+                         "g.json: /keys/1: 'aperture' is in some keys and not in others"));
+}
+
 TEST_F(SequenceTest, NumberedScenesAreFramesToo) {
   KDRAY_NEED_DEVICE();
   fs::copy_file(scene, folder / "s07.nff");
@@ -339,7 +379,8 @@ TEST_F(SequenceTest, WhatMakesNoSequence) {
   EXPECT_TRUE(fails_with(render({"--frames", "1-2", "--camera-path", path}), 2, "A..B"));
   EXPECT_TRUE(fails_with(render({"--frames", "3..2", "--camera-path", path}), 2, "--frames"));
   EXPECT_TRUE(fails_with(render({"--frames", "1..2", "--camera-path", path, "--fov", "3"}), 2, "--fov"));
-  EXPECT_TRUE(fails_with(render({"--frames", "1..2", "--camera-path", path, "--focus", "3"}), 2, "--focus"));
+  EXPECT_TRUE(
+      fails_with(render({"--frames", "1..2", "--camera-path", path, "--camera", "0"}), 2, "--camera"));
   EXPECT_TRUE(
       fails_with(render({"--frames", "1..2", "--camera-path", path, "-o", "-"}), 2, "a file for each frame"));
   EXPECT_TRUE(fails_with(render({"--restarts", "2"}), 2, "--checkpoint DIR or --share DIR"));

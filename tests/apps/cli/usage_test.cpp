@@ -189,6 +189,7 @@ TEST(Usage, ValuesThatAreNoneAreRefusedWithWhatIsAccepted) {
       {"--precision", "half", "float, double"},
       {"--gamma", "0", "srgb"},
       {"--gamma", "warm", "srgb"},
+      {"--exposure", "nan", "-100 to 100"},
       {"--bits", "12", "8, 16"},
       {"--aov", "depth,colour", "primitive"},
       {"--aov", "", "depth"},

@@ -164,7 +164,7 @@ std::vector<std::array<double, 8>> read_doubles(const std::filesystem::path& fil
 TEST(ReadRays, ReadsTexts) {
   const test::Folder folder;
   const std::array<double, 8> first{0.1, -2, 3e-300, 0, 1, 0, -1, INFINITY}, second{1, 2, 3, 0.5, 4, 5, 6, 7};
-  EXPECT_EQ(read_doubles(folder.put("r.txt", "# rays\n0.1 -2 +3e-300 0 1 0 -1 inf\n\n1 2 3 0.5 4 5 6 7")),
+  EXPECT_EQ(read_doubles(folder.put("r.txt", "# rays\n0.1 -2 +3e-300 0 1 0 -1 inf\n\n1 2 3 0.5 4 5 6 7#c")),
             (std::vector{first, second}));
   EXPECT_EQ(
       read_doubles(folder.put("r.csv", "ox,oy,oz,t_min,dx,dy,dz,t_max\r\n0.1,-2, 3e-300,0,1,0,-1,inf\r\n")),
