@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "accel/prepare/instanced.h"
+#include "engine/wavefront/channels.h"
 
 #include <algorithm>
 
@@ -38,6 +39,7 @@ void check_form(bool is_walked, const prepare::Prepared& scene) {
 }
 
 void check_channels(const RenderOptions& options, const prepare::Prepared& scene) {
+  wavefront::check_channels(options.channels);
   const bool of_instances = !scene.flat.instances.empty();
   const std::span<const std::string> by_binary_walk =
       of_instances ? std::span<const std::string>() : std::span<const std::string>(options.channels);

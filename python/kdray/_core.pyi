@@ -11,7 +11,12 @@ class Scene:
     def __init__(self) -> None: ...
     @staticmethod
     def load(
-        file: str, smooth_degrees: float | None, time: float | None = None, animation: str = "", asset_root: str = ""
+        file: str,
+        smooth_degrees: float | None,
+        time: float | None = None,
+        animation: str = "",
+        asset_root: str = "",
+        instances: str = "auto",
     ) -> Scene: ...
     def add_mesh(
         self,
@@ -189,6 +194,7 @@ def write_picture(
     pixels: NDArray[Any],
     channels: Sequence[tuple[str, NDArray[Any]]],
     gamma: float,
+    exposure: float,
     bits: int,
     within: Sequence[int] | None,
 ) -> list[str]: ...

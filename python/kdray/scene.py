@@ -569,11 +569,13 @@ class Scene:
 
         Questions from other threads are answered from the state before until it returns.
         """
-        if quality not in ("fast", "balanced", "best"):
-            raise errors.UsageError(f'quality is "fast", "balanced" or "best", not {short(quality)}')
         with self._lock:
-            self._quality = quality
-            self._commit()
+            before, self._quality = self._quality, quality
+            try:
+                self._commit()
+            except BaseException:
+                self._quality = before
+                raise
         return self
 
     def _commit(self) -> None:
@@ -898,6 +900,7 @@ class Scene:
             self._core.remove(0)
         for id in range(1 if file else 0, state["end"]):
             self._add_again(state["added"].get(id), infos.get(id))
+        self._end = state["end"]
         for id, info in infos.items():
             self._core.enable(id, info.enabled)
             self._core.set_mask(id, info.mask)
@@ -907,7 +910,6 @@ class Scene:
         if added is None or info is None:
             nothing = np.empty((0, 3), np.float32)
             self._core.remove(self._core.add_shapes("spheres", [nothing, nothing[:, 0]], "", 0, 0, False))
-            self._end = id + 1
         elif added.of is not None:
             transforms, materials = added.arrays
             self.add_instances(added.of, transforms, materials=materials, mask=info.mask, name=info.name)

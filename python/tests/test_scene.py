@@ -221,7 +221,7 @@ def test_files_that_are_wrong(tmp_path):
 def test_a_quality_that_is_not_there_changes_nothing(ball_mesh):
     scene = kdray.Scene()
     scene.add_mesh(*ball_mesh)
-    with pytest.raises(kdray.UsageError, match='not "worst"|not .worst'):
+    with pytest.raises(kdray.UsageError, match='not "worst"'):
         scene.commit("worst")
     assert scene.any_hit([0, 0, 5], [0, 0, -1])
 
@@ -245,10 +245,10 @@ def test_names_of_what_was_removed_are_none(ball_mesh):
 def test_instances_of_a_file_may_be_copied(tmp_path):
     (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     (tmp_path / "a.json").write_text(
-        json.dumps({"objects": [{"type": "mesh", "file": "a.obj", "move": [k, 0, 0]} for k in range(3)]})
+        json.dumps({"objects": [{"type": "mesh", "file": "a.obj", "translate": [k, 0, 0]} for k in range(3)]})
     )
     assert kdray.load(tmp_path / "a.json", instances="flat").primitives == 3
-    with pytest.raises(kdray.UsageError, match="not .keep"):
+    with pytest.raises(kdray.UsageError, match='not "keep"'):
         kdray.load(tmp_path / "a.json", instances="keep")
 
 

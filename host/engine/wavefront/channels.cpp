@@ -32,16 +32,9 @@ constexpr Plane kPlaneTable[kPlanes] = {{"depth", "depth", 0},         {"normal"
 
 std::vector<Plane> wanted_planes(std::span<const std::string> names) {
   std::vector<Plane> planes;
-  for (const std::string& name : names) {
-    const std::size_t before = planes.size();
+  for (const std::string& name : names)
     for (const Plane& p : kPlaneTable)
       if (name == p.channel) planes.push_back(p);
-    if (planes.size() == before)
-      throw Error(ErrorCode::usage,
-                  fmt::format("there is no channel '{}'; there are depth, normal, primitive, instance, "
-                              "cost, queue and samples",
-                              name));
-  }
   return planes;
 }
 
@@ -98,6 +91,15 @@ class PixelRuns {
 };
 
 }  // namespace
+
+void check_channels(std::span<const std::string> names) {
+  for (const std::string& name : names)
+    if (name != "queue" && name != "samples" && wanted_planes({&name, 1}).empty())
+      throw Error(ErrorCode::usage,
+                  fmt::format("there is no channel '{}'; there are depth, normal, primitive, instance, "
+                              "cost, queue and samples",
+                              name));
+}
 
 std::vector<image::Channel> render_channels(std::span<const ChannelQueue> queues, const layout::Frame& frame,
                                             const LocalSpace& space, layout::Features features,

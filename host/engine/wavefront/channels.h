@@ -21,9 +21,11 @@ struct ChannelQueue {
   cl::CommandQueue queue;
 };
 
-// `names` of "depth", "normal", "primitive", "instance", "cost"; throws ErrorCode::usage, naming what there
-// is, for others. Depths are the world's; the frame's lengths are those of `space`. The queues, of one scene,
-// share the pixels.
+// Throws ErrorCode::usage, naming what there is, for a name that is no channel's.
+void check_channels(std::span<const std::string> names);
+
+// `names` of "depth", "normal" (which makes three), "primitive", "instance", "cost". Depths are the world's;
+// the frame's lengths are those of `space`. The queues, of one scene, share the pixels.
 std::vector<image::Channel> render_channels(std::span<const ChannelQueue> queues, const layout::Frame& frame,
                                             const LocalSpace& space, layout::Features features,
                                             Precision precision, std::span<const std::string> names);

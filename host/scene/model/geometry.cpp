@@ -122,7 +122,7 @@ class Maker {
         out_.sources[end++] = static_cast<std::uint32_t>(i);
         const Box box = bounds_of(t);
         found.bounds.grow(box);
-        found.fine += !is_zero_area(t) && is_fine(box);  // without area there is no shadow to lose
+        found.fine += !for_doubles_ && !is_zero_area(t) && is_fine(box);  // without area: no shadow to lose
       }
       kept[first / kGrain] = end - first;
       facts[first / kGrain] = found;
@@ -227,7 +227,7 @@ class Maker {
       kept.push_back(shape);
       const Box box = bounds_of(shape);
       out_.bounds.grow(box);
-      out_.fine += is_fine(box);
+      out_.fine += !for_doubles_ && is_fine(box);
     }
   }
 
