@@ -102,7 +102,9 @@ const scene::Scene& Scene::Impl::model() {
   all.files.clear();
   if (all.framing.camera) all.camera.reset();
   if (all.framing.lights) all.lights.clear();
-  all.framing = {};
+  const bool is_file =
+      file && file->enabled && std::ranges::none_of(geometries, [](const auto& g) { return g.has_value(); });
+  all.framing = {.box = is_file ? base.framing.box : DBox{}};
   scene::frame_scene(all);
   assembled = std::move(all);
   is_stale = false;

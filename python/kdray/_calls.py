@@ -20,6 +20,14 @@ def short(value: Any) -> str:
     return text if len(text) <= MOST else text[: MOST - 3] + "..."
 
 
+def _is_ours(error: TypeError) -> bool:
+    """Whether kdray's bindings raised it, and not what a function of the caller's has called."""
+    last = error.__traceback__
+    while last is not None and last.tb_next is not None:
+        last = last.tb_next
+    return last is not None and str(last.tb_frame.f_globals.get("__name__", "")).startswith("kdray.")
+
+
 def in_one_line(name: str, is_method: bool = False) -> Callable[[F], F]:
     """Has a function say what was wrong in a line, where the bindings list all their types."""
 
@@ -29,8 +37,8 @@ def in_one_line(name: str, is_method: bool = False) -> Callable[[F], F]:
             try:
                 return function(*args, **named)
             except TypeError as error:
-                if "incompatible function arguments" not in str(error):
-                    raise  # of the caller's own functions, perhaps
+                if "incompatible function arguments" not in str(error) or not _is_ours(error):
+                    raise
                 given = [short(a) for a in args[is_method:]] + [f"{key}={short(a)}" for key, a in named.items()]
             raise TypeError(
                 f"{name}({', '.join(given)}): an argument is of a type, or a number, that it can't be; see help({name})"

@@ -32,9 +32,11 @@ class Picture(np.ndarray[Any, np.dtype[np.float32]]):
     ) -> Picture:
         """Pixels (height, width, 3), linear; for `save` of whatever a program has computed."""
         picture = np.asarray(pixels, dtype=np.float32).view(cls)
-        of = pixels if isinstance(pixels, Picture) else None
-        picture.channels = channels or (of.channels if of is not None else {})
-        picture.warnings = warnings or (of.warnings if of is not None else [])
+        if isinstance(pixels, Picture):
+            channels = dict(pixels.channels) if channels is None else channels
+            warnings = list(pixels.warnings) if warnings is None else warnings
+        picture.channels = channels or {}
+        picture.warnings = warnings or []
         return picture
 
     def __array_finalize__(self, of: Any) -> None:

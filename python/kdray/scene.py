@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import math
+import operator
 import os
 import threading
 from collections.abc import Iterable, Sequence
@@ -898,9 +899,10 @@ class Scene:
         infos = {info.id: info for info in state["infos"]}
         if file and 0 not in infos:
             self._core.remove(0)
-        for id in range(1 if file else 0, state["end"]):
+        end = state.get("end", max(infos, default=-1) + 1)  # none: pickled by an older kdray
+        for id in range(1 if file else 0, end):
             self._add_again(state["added"].get(id), infos.get(id))
-        self._end = state["end"]
+        self._end = end
         for id, info in infos.items():
             self._core.enable(id, info.enabled)
             self._core.set_mask(id, info.mask)
@@ -956,7 +958,7 @@ def load(
     """
     chosen = _device(device)
     scene = Scene.__new__(Scene)
-    root = os.fspath(asset_root)
+    root = os.fsdecode(asset_root)
     file = (os.path.abspath(os.fsdecode(path)), smooth, time, str(animation), root and os.path.abspath(root), instances)
     scene._start(_core.Scene.load(*file), chosen, 0, geometry)
     scene._file = file
@@ -981,9 +983,11 @@ tell_in_one_line(Scene, but={"closest_hit", "any_hit", "count_hits"})
 
 
 def _size(size: Any) -> tuple[int, int]:
-    if not isinstance(size, Sequence) or len(size) != 2:
-        raise errors.UsageError(f"size is (width, height), not {short(size)}")
-    return size[0], size[1]
+    try:
+        width, height = size
+        return operator.index(width), operator.index(height)
+    except (TypeError, ValueError):
+        raise errors.UsageError(f"size is (width, height), not {short(size)}") from None
 
 
 def _camera(camera: Any) -> list[float] | None:

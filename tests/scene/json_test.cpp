@@ -110,6 +110,10 @@ TEST(Json, ACameraThatIsMadeUpLooksAtWhatStandsOnAPlane) {
   EXPECT_NEAR(with.framing.box.hi.x, without.framing.box.hi.x, 1e-9);
   EXPECT_LT(glm::length(with.camera->from - without.camera->from), 1);
   EXPECT_FALSE(seen(plane, "").framing.box.empty());
+  Scene lit = read(R"({"lights": [{"type": "point", "position": [100, 200, 100]}], "objects": [)" + plane +
+                   ", " + balls + "]}");
+  frame_scene(lit);
+  EXPECT_NEAR(lit.framing.box.hi.x, without.framing.box.hi.x, 1e-9);
   const Scene given =
       seen(R"({"type": "plane", "point": [0, 0, 0], "normal": [0, 1, 0], "extent": 50}, )", balls);
   EXPECT_NEAR(given.framing.box.hi.x, 50, 1e-9);

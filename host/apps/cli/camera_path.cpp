@@ -36,8 +36,6 @@ constexpr Own kOwnKeys[] = {{"ortho", &Camera::ortho_width},
 
 // Returns why no picture can be made by this camera; null: one can.
 const char* fault_in(const Camera& c) {
-  for (const Own& own : kOwnKeys)
-    if (!(c.*own.value >= 0)) return "ortho, hither, aperture or focus is below 0";
   scene::Camera camera;
   camera.from = {c.from[0], c.from[1], c.from[2]};
   camera.at = {c.at[0], c.at[1], c.at[2]};
@@ -88,11 +86,17 @@ CameraPath::CameraPath(const std::filesystem::path& file) : file_(file.string())
         throw node.error(fmt::format("'{}' is in some keys and not in others", kOwnKeys[k].key));
       has_[k] = has;
     }
+    has_fov_ |= node.find("fov").has_value();
     keys_.push_back({frame,
                      {c.from[0], c.from[1], c.from[2], c.at[0], c.at[1], c.at[2], c.up[0], c.up[1], c.up[2],
                       c.fov, c.ortho_width, c.hither, c.aperture, c.focus}});
   }
   if (keys_.empty()) throw root["keys"].expected("one key at least");
+  for (const std::size_t k : {std::size_t{0}, kOwn - 1}) {  // 0 is no small one
+    const auto is_none = [k](const Key& key) { return key.values[kPlaced + k] == 0; };
+    if (std::ranges::any_of(keys_, is_none) && !std::ranges::all_of(keys_, is_none))
+      throw root["keys"].error(fmt::format("'{}' is 0 in some keys and not in others", kOwnKeys[k].key));
+  }
 }
 
 // Returns by how much a value changes from frame to frame where the curve passes a key: the mean of both
@@ -136,7 +140,8 @@ Camera CameraPath::at(int frame, const Camera& own) const {
   camera.up = {v[6], v[7], v[8]};
   camera.fov = v[9];
   for (std::size_t k = 0; k < kOwn; ++k)
-    if (has_[k]) camera.*kOwnKeys[k].value = v[kPlaced + k];
+    if (has_[k]) camera.*kOwnKeys[k].value = std::max(0.0, v[kPlaced + k]);  // a smooth curve may swing below
+  if (has_fov_ && !has_[0]) camera.ortho_width = 0;
   if (const char* const fault = fault_in(camera))
     throw input_error(file_, 0, fmt::format("between its keys, at frame {}: {}", frame, fault),
                       "add a key there");

@@ -40,6 +40,7 @@ class CameraPath {
   std::string file_;
   std::vector<Key> keys_;
   std::array<bool, kOwn> has_ = {};  // of the others
+  bool has_fov_ = false;             // some key
   bool smooth_ = true;
 };
 

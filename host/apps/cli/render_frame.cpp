@@ -76,7 +76,7 @@ void check_memory(const RenderArgs& o, scene::RenderSettings asked) {
     picture.height = static_cast<std::uint64_t>(render.crop->height);
   }
   for (const std::string& name : render.channels) picture.n_channels += name == "normal" ? 3 : 1;
-  if (o.view.transparent) ++picture.n_channels;
+  if (o.view.transparent) picture.n_channels += 4;  // alpha, and what it or a sky comes from
   picture.exr = makes_exr(o);
   picture.bits = o.write.png_bits;
   picture.adaptive = render.adaptive_target > 0;
@@ -101,15 +101,17 @@ std::vector<float> eye_rays_picture(const PreparedScene& scene, const DeviceOpti
 std::vector<float> make_transparent(Picture& picture, const PreparedScene& scene, const DeviceOptions& device,
                                     const RenderArgs& o) {
   if (!o.view.transparent) return {};
-  const std::vector<float> white = eye_rays_picture(scene.coverage(), device, o.render);
+  std::vector<float> alpha;
+  {
+    const std::vector<float> white = eye_rays_picture(scene.coverage(), device, o.render);
+    for (std::size_t i = 0; i < white.size(); i += 3) alpha.push_back(std::clamp(white[i], 0.0f, 1.0f));
+  }
   const bool has_sky = scene.settings().sky.kind != scene::SkyKind::none;
   const std::vector<float> sky =
       has_sky ? eye_rays_picture(scene.backdrop(), device, o.render) : std::vector<float>();
   const vec3& background = scene.settings().background;
-  std::vector<float> alpha(white.size() / 3);
-  for (std::size_t i = 0; i < white.size(); ++i) {
-    const float covered = std::clamp(white[i], 0.0f, 1.0f);
-    alpha[i / 3] = covered;
+  for (std::size_t i = 0; i < picture.rgb.size(); ++i) {
+    const float covered = alpha[i / 3];
     float& value = picture.rgb[i];
     // Where nothing is covered nothing may be left, however the sum was rounded.
     value = covered == 0 ? 0 : std::max(0.0f, value - (has_sky ? sky[i] : (1 - covered) * background[i % 3]));
@@ -207,7 +209,8 @@ FrameMaker::FrameMaker(RenderArgs& o, const First& first) : is_further_(first !=
   if (in_shares) take_plain_look(o, scene_->scene().settings(), is_further_);
   shown_ = in_look(scene_->scene(), o.view);
   seen_ = seen_by(o.view.view, *shown_, o, first);
-  if (o.view.view.focus && !is_further_ && !o.quiet && leads() && !(seen_->settings().camera->aperture > 0))
+  if (o.view.view.focus && o.checkpoint.camera_path.empty() && !is_further_ && !o.quiet && leads() &&
+      !(seen_->settings().camera->aperture > 0))
     say("--focus has no effect: there is no lens; --aperture D puts one in");
   renderer_ = api::make_renderer(*seen_, scene_->device(), o.hooks);
 }

@@ -29,9 +29,9 @@ class RunFiles {
 
   // Notes an output; without a name there is none.
   void write(const std::string& option, const std::filesystem::path& file);
-  // Notes a picture with its channels' pictures.
-  // A folder that is made where it isn't there.
+  // Notes a folder that is made where it isn't there.
   void write_folder(const std::string& option, const std::filesystem::path& folder);
+  // Notes a picture with its channels' pictures.
   void write_picture(const std::string& option, const std::filesystem::path& file,
                      std::span<const std::string> channels, const image::WriteOptions& options);
 

@@ -25,7 +25,8 @@ double start_of(const LocalLine& line, double t_min) {
 
 std::optional<LocalLine> ExactRays::line_of(std::size_t i) const {
   const dvec3 origin = rays_->origin(i), direction = rays_->direction(i);
-  if (fault_of(origin, direction, rays_->t_min(i), rays_->t_max(i)) != nullptr || rays_->mask(i) == 0)
+  const double t_min = rays_->t_min(i), t_max = rays_->t_max(i);
+  if (!(t_min < t_max) || fault_of(origin, direction, t_min, t_max) != nullptr || rays_->mask(i) == 0)
     return std::nullopt;
   return context_->frame.line(origin, direction, true);
 }
@@ -48,9 +49,11 @@ bool ExactRays::is_seen(const ExactHit& hit, std::uint32_t mask) const {
   return (context_->table.mask_of(number_of(flat, hit.ref)) & mask) != 0;
 }
 
-void ExactRays::cross(std::size_t i, const LocalLine& line, std::vector<ExactHit>& hits) const {
+void ExactRays::cross(std::size_t i, const LocalLine& line, double most, std::vector<ExactHit>& hits) const {
+  constexpr double kBeyond = 0x1p-10;  // more than boxes and hits are rounded by
   const double start = start_of(line, rays_->t_min(i));
-  scene_.cross(line.origin + start * line.direction, line.direction, hits);
+  const double end = std::scalbn(most, -line.exponent) - line.ahead - start;
+  scene_.cross(line.origin + start * line.direction, line.direction, end * (1 + kBeyond) + kBeyond, hits);
   const std::uint32_t mask = rays_->mask(i);
   std::erase_if(hits, [&](ExactHit& hit) {
     hit.t = distance(i, line, {hit.t + start, hit.u, hit.v, hit.ref, hit.instance});
@@ -59,7 +62,7 @@ void ExactRays::cross(std::size_t i, const LocalLine& line, std::vector<ExactHit
 }
 
 void ExactRays::all_hits(std::size_t i, const LocalLine& line, std::vector<ExactHit>& hits) const {
-  cross(i, line, hits);
+  cross(i, line, rays_->t_max(i), hits);
   const double t_min = rays_->t_min(i);
   // One in the start point counts where t_min is 0.
   if (t_min != 0) std::erase_if(hits, [&](const ExactHit& hit) { return hit.t <= t_min; });
@@ -87,14 +90,15 @@ std::optional<ExactHit> ExactRays::closest(std::size_t i, const std::optional<Ex
   const bool in_doubt = (hit && !(are_apart(t_min, hit->t) && hit->t < t_max)) ||
                         (t_min != 0 && is_near(*line, t_min)) ||
                         (!(hit && are_apart(hit->t, t_max)) && is_near(*line, t_max));
-  return in_doubt ? closest_anew(i, *line) : hit;
+  return in_doubt ? closest_anew(i, *line, hit && hit->t > t_min && hit->t < t_max ? hit->t : t_max) : hit;
 }
 
-std::optional<ExactHit> ExactRays::closest_anew(std::size_t i, const LocalLine& line) const {
+std::optional<ExactHit> ExactRays::closest_anew(std::size_t i, const LocalLine& line, double most) const {
+  const double t_min = rays_->t_min(i), t_max = rays_->t_max(i);
   std::vector<ExactHit> hits;
-  cross(i, line, hits);
-  std::erase_if(hits, [&](const ExactHit& hit) { return hit.t <= rays_->t_min(i); });
-  if (hits.empty()) return std::nullopt;
+  cross(i, line, most, hits);
+  std::erase_if(hits, [&](const ExactHit& hit) { return hit.t <= t_min; });
+  if (hits.empty()) return most < t_max ? closest_anew(i, line, t_max) : std::nullopt;
   scene_.sort(hits);
   return hits.front();
 }

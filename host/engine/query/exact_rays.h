@@ -65,11 +65,13 @@ class ExactRays {
   // Whether the line is too near to a surface there.
   bool is_near(const LocalLine& line, double t) const;
   bool has_end_near(std::size_t i, const LocalLine& line) const;
-  // What the ray crosses at t_min or above and below t_max, in no order.
-  void cross(std::size_t i, const LocalLine& line, std::vector<ExactHit>& hits) const;
+  // What the ray crosses at t_min or above and below t_max, in no order; of what lies beyond `most` some may
+  // be left out.
+  void cross(std::size_t i, const LocalLine& line, double most, std::vector<ExactHit>& hits) const;
   void all_hits(std::size_t i, const LocalLine& line, std::vector<ExactHit>& hits) const;
   double distance(std::size_t i, const LocalLine& line, const ExactHit& about) const;
-  std::optional<ExactHit> closest_anew(std::size_t i, const LocalLine& line) const;
+  // `most`: where the ray seems to hit something, or t_max.
+  std::optional<ExactHit> closest_anew(std::size_t i, const LocalLine& line, double most) const;
   bool is_seen(const ExactHit& hit, std::uint32_t mask) const;
 
   const QueryContext* context_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "engine/query/scene_arguments.h"
 #include "engine/query/surface.h"
@@ -96,8 +97,12 @@ double distance_to_plane(const Line& line, const layout::Triangle& triangle, dou
 
 // A half-line on its way through a tree: the scene's own, or that of an instance's mesh.
 struct ExactScene::Walk {
-  Walk(const dvec3& from, const dvec3& direction, double margin, std::vector<ExactHit>& hits)
-      : line(from, direction), origin(from), margin(widened(margin, from)), hits(&hits) {
+  Walk(const dvec3& from, const dvec3& direction, double most, double margin, std::vector<ExactHit>& hits)
+      : line(from, direction),
+        origin(from),
+        most(static_cast<float>(std::min(most, double{std::numeric_limits<float>::max()}))),
+        margin(widened(margin, from)),
+        hits(&hits) {
     constexpr float kMost = 0x1p100f;
     for (int k = 0; k < 3; ++k)
       inverse[k] = static_cast<float>(std::clamp(1 / direction[k], double{-kMost}, double{kMost}));
@@ -105,6 +110,7 @@ struct ExactScene::Walk {
 
   ExactLine line;
   vec3 origin, inverse;
+  float most;    // boxes that it enters beyond this may be left out
   float margin;  // by which boxes are widened
   std::vector<ExactHit>* hits;
   std::uint32_t instance = kNoInstance;
@@ -114,7 +120,7 @@ struct ExactScene::Walk {
   std::uint32_t slots_of(const WideNode& node) const {
     return choose_slots([&](int first) {
       const auto lo = [&](int k) { return slots_at(node.bounds[k][0] + first); };
-      Slots enter{}, leave = Slots{} + HUGE_VALF;
+      Slots enter{}, leave = Slots{} + most;
       for (int k = 0; k < 3; ++k) {
         const Slots a = (lo(k) - (origin[k] + margin)) * inverse[k],
                     b = (slots_at(node.bounds[k][1] + first) - (origin[k] - margin)) * inverse[k];
@@ -195,7 +201,8 @@ void ExactScene::cross(std::uint32_t index, const Walk& walk) const {
       const MeshLine line = line_in_mesh(instance, walk.line.origin(), walk.line.direction());
       if (line.direction == dvec3(0)) continue;
       const double margin = 2 * (kConesBeyondBoxes + kFloatsUnsure) * instance.reach;
-      Walk inside(line.origin, line.direction, margin, *walk.hits);
+      Walk inside(line.origin, line.direction, std::ldexp(double{walk.most}, line.exponent), margin,
+                  *walk.hits);
       inside.instance = instance.whole;
       inside.exponent = line.exponent;
       cross(instance.root, inside);
@@ -216,10 +223,11 @@ void ExactScene::cross(std::uint32_t index, const Walk& walk) const {
   }
 }
 
-void ExactScene::cross(const dvec3& origin, const dvec3& direction, std::vector<ExactHit>& hits) const {
+void ExactScene::cross(const dvec3& origin, const dvec3& direction, double most,
+                       std::vector<ExactHit>& hits) const {
   hits.clear();
   if (scene_->wide.nodes.size() == 0) return;
-  cross(0, Walk(origin, direction, margin_, hits));
+  cross(0, Walk(origin, direction, most, margin_, hits));
   sort(hits);
   const auto same = [](const ExactHit& a, const ExactHit& b) {
     return a.t == b.t && a.ref == b.ref && a.instance == b.instance;

@@ -37,9 +37,9 @@ class ExactScene {
   // primitives alone, not on the tree. The place lies within the scene's bounds.
   bool is_near(const dvec3& place) const;
 
-  // All that the line crosses at t >= 0, sorted, in place of what `hits` held. The direction's largest
-  // component is from 2^-8 to 2^8.
-  void cross(const dvec3& origin, const dvec3& direction, std::vector<ExactHit>& hits) const;
+  // All that the line crosses at t >= 0, sorted, in place of what `hits` held; beyond `most` some may be left
+  // out. The direction's largest component is from 2^-8 to 2^8.
+  void cross(const dvec3& origin, const dvec3& direction, double most, std::vector<ExactHit>& hits) const;
   // By t, then instance (what is in none first), then the primitive's number.
   void sort(std::vector<ExactHit>& hits) const;
 

@@ -67,6 +67,7 @@ LocalFrame::LocalFrame(const scene::Geometry& geometry, double apart)
   const double wider = 0x1p-12 * kLocalReach + apart;
   lo_ = dvec3(geometry.bounds.lo) - wider;
   hi_ = dvec3(geometry.bounds.hi) + wider;
+  near_ = std::max({near_, largest_component(lo_), largest_component(hi_)});
 }
 
 // Where the line enters the bounds, in multiples of the direction; infinity: it passes them by.

@@ -132,7 +132,7 @@ std::vector<std::uint8_t> are_inside(const QueryContext& context, Place& place, 
     for (std::size_t i = begin; i < end; ++i) {
       const dvec3 local = context.frame.space().local(points[i]);
       if (context.frame.is_outside(local) || !exact.is_near(local)) continue;
-      exact.cross(local, dvec3(kUp[0], kUp[1], kUp[2]), hits);
+      exact.cross(local, dvec3(kUp[0], kUp[1], kUp[2]), HUGE_VAL, hits);
       inside[i] = hits.size() % 2;
     }
   });

@@ -24,13 +24,18 @@ namespace {
 
 constexpr std::size_t kGrain = 3 << 15;  // sums to a task: 1 MiB of them and of the picture
 
-// Calls take(begin, end) for parts of [0, n), of `grain` elements or more. A queue's thread lasts as long as
-// a picture, and TBB makes an arena for each thread that has none, of which 2021.8 (Debian 12) never gives
-// some memory back: threads share one, which is left to the process, since they may outlive what is static.
+// A queue's thread lasts as long as a picture, and TBB makes an arena for each thread that has none, of which
+// 2021.8 (Debian 12) never gives some memory back: threads share one, which is left to the process, since
+// they may outlive what is static.
+tbb::task_arena& shared_arena() {
+  static tbb::task_arena& arena = *new tbb::task_arena;
+  return arena;
+}
+
+// Calls take(begin, end) for parts of [0, n), of `grain` elements or more.
 template <class Take>
 void in_shares(std::size_t n, std::size_t grain, const Take& take) {
-  static tbb::task_arena& arena = *new tbb::task_arena;
-  arena.execute([&] {
+  shared_arena().execute([&] {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain),
                       [&](const auto& range) { take(range.begin(), range.end()); });
   });

@@ -106,10 +106,13 @@ void check_shape(const Image& image, std::span<const Channel> channels, const Wr
 }
 
 // In an EXR a channel stands beside the colour, and beside a PNG it is a part of a file's name.
-void check_names(const fs::path& file, std::span<const Channel> channels) {
-  std::set<std::string> names = {"", "R", "G", "B", "A"};
+void check_names(const fs::path& file, PictureFormat format, std::span<const Channel> channels) {
+  const bool is_exr = format == PictureFormat::exr;
+  std::set<std::string> names = {""};
+  if (is_exr) names.insert({"R", "G", "B", "A"});
   for (const Channel& channel : channels)
-    if (!names.insert(exr_name(channel.name)).second || channel.name.find('/') != std::string::npos)
+    if (!names.insert(is_exr ? exr_name(channel.name) : channel.name).second ||
+        channel.name.find('/') != std::string::npos)
       throw input_error(file.string(), 0, "a channel can't have the name '" + channel.name + "'",
                         "give each one of its own that is no colour's");
 }
@@ -132,7 +135,7 @@ std::string encode_picture(PictureFormat format, const Image& image, std::span<c
 Written write_picture(const fs::path& file, const Image& image, std::span<const Channel> channels,
                       const WriteOptions& options) {
   const PictureFormat format = options.format ? *options.format : format_for_writing(file);
-  check_names(file, channels);
+  check_names(file, format, channels);
   Written written;
   written.nan_values = count_nan(image);
   write_file(file, encode_picture(format, image, channels, options));

@@ -50,24 +50,36 @@ double largest_side(const DBox& box) {
   return box.empty() ? 0 : largest_component(box.hi - box.lo);
 }
 
-// Planes without end count by the point below the middle of all else: a camera that is made up looks at that,
-// and not at how far they were made to reach.
+dvec3 foot_of(const dvec3& point, const Plane& plane) {
+  return point - plane.normal * glm::dot(point - plane.point, plane.normal);
+}
+
+// Returns the box of what a camera that is made up looks at: of planes without end the points below the
+// middle of all else, and not how far they were made to reach.
+DBox box_to_show(std::span<const Unsettled::Wide> planes, Scene& scene) {
+  std::vector<Disc> discs = scene.discs;
+  for (const auto& [plane, number] : planes) discs[number].radius = plane.extent > 0 ? plane.extent : -1;
+  std::erase_if(discs, [](const Disc& disc) { return disc.radius < 0; });
+  std::swap(discs, scene.discs);
+  DBox box = scene.bounds();
+  std::swap(discs, scene.discs);
+  if (box.empty()) return box;
+  const dvec3 middle = box.center();
+  for (const auto& [plane, number] : planes)
+    if (!(plane.extent > 0)) box.grow(foot_of(middle, plane));
+  return largest_side(box) > 0 ? box : DBox{};
+}
+
 void settle_planes(std::span<const Unsettled::Wide> planes, Scene& scene) {
-  const DBox box = size_of(scene);
-  bool have_end = true;
+  const DBox box = size_of(scene), shown = box_to_show(planes, scene);
+  const double side = largest_side(box), size = side > 0 ? side : 1;
   for (const auto& [plane, number] : planes) {
     Disc& disc = scene.discs[number];
-    have_end &= plane.extent > 0;
-    if (plane.extent > 0)
-      disc.radius = plane.extent;
-    else if (!box.empty())
-      disc.center = box.center() - plane.normal * glm::dot(box.center() - plane.point, plane.normal);
+    disc.radius = plane.extent > 0 ? plane.extent : kFar * size;
+    if (plane.extent > 0) continue;
+    scene.framing.box = shown;
+    if (!box.empty()) disc.center = foot_of(box.center(), plane);
   }
-  if (have_end) return;
-  if (const DBox all = scene.bounds(); largest_side(all) > 0) scene.framing.box = all;
-  const double side = largest_side(box);
-  for (const auto& [plane, number] : planes)
-    if (!(plane.extent > 0)) scene.discs[number].radius = kFar * (side > 0 ? side : 1);
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 // What    "-": scenes from standard input, and pictures, hits and scenes to standard output.
+#include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -62,7 +64,9 @@ TEST_F(PipesTest, AScenesPipeIsReadOnce) {
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   std::thread writer([&] { std::ofstream(pipe) << std::ifstream(scene).rdbuf(); });
   const Outcome run = kdray({"render", pipe, "-q", "-o", folder / "b.png", "--cache", folder / "cache"});
+  const int end = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);  // lets the writer go on where nobody has read
   writer.join();
+  ::close(end);
   ASSERT_TRUE(succeeds(run));
   ASSERT_TRUE(succeeds(kdray({"render", scene, "-q", "-o", folder / "a.png"})));
   EXPECT_EQ(folder.get("b.png"), folder.get("a.png"));

@@ -205,6 +205,14 @@ TEST_F(SequenceTest, ACameraPathKeepsTheRestOfTheCamera) {
                             folder.put("f.json", keys + R"("aperture": 0.1, "focus": 3}]})").string(),
                             "--frames", "0..0"};
   EXPECT_EQ(picture("plain.json", pulled), picture("plain.json", focused));
+  // A curve that begins level must not swing below 0.
+  folder.put("o.json", R"({"kdray_camera_path": 1, "keys": [
+      {"frame": 0, "from": [0, 0, 5], "at": [0, 0, 0], "aperture": 0},
+      {"frame": 4, "from": [0, 0, 5], "at": [0, 0, 0], "aperture": 0},
+      {"frame": 8, "from": [0, 0, 5], "at": [0, 0, 0], "aperture": 0.5}]})");
+  EXPECT_TRUE(succeeds(kdray({"render", "plain.json", "--camera-path", "o.json", "--frames", "2..2", "--size",
+                              "8x6", "-q", "-o", "o%d.png"},
+                             {.folder = folder.path()})));
   folder.put("g.json", keys + R"("focus": 3}]})");
   EXPECT_TRUE(fails_with(render({"--camera-path", folder / "g.json", "--frames", "0..0"}), 1,
                          "g.json: /keys/1: 'aperture' is in some keys and not in others"));
