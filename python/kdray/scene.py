@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import math
-import operator
 import os
 import threading
 from collections.abc import Iterable, Sequence
@@ -622,7 +621,7 @@ class Scene:
         A ray that is asked again with its t as t_min, which is exclusive, finds what comes after just that hit. Which
         surface comes first is decided in floats about the scene's centre; t of a float64 ray is that of this surface
         in double, and hits lie between t_min and t_max. (What remains: one within some 4e-6 of the scene's size ahead
-        of a start at t_min = 0 may be passed by, and of two as near to each other the farther one be found;
+        of where the ray begins may be passed by, and of two as near to each other the farther one be found;
         `all_hits` decides the former in double.) Results are float32 for float32 rays. `fields` names the arrays of
         `Hits` that are wanted (all but `point`, and `instance` only where the scene has instances, if you say
         nothing): fewer are faster; `out` is a Hits to write into. Rays that mean nothing (NaN, no direction) are
@@ -985,9 +984,9 @@ tell_in_one_line(Scene, but={"closest_hit", "any_hit", "count_hits"})
 def _size(size: Any) -> tuple[int, int]:
     try:
         width, height = size
-        return operator.index(width), operator.index(height)
     except (TypeError, ValueError):
         raise errors.UsageError(f"size is (width, height), not {short(size)}") from None
+    return width, height
 
 
 def _camera(camera: Any) -> list[float] | None:

@@ -32,10 +32,21 @@ std::optional<LocalLine> ExactRays::line_of(std::size_t i) const {
 }
 
 bool ExactRays::is_near(const LocalLine& line, double t) const {
-  const double local = std::scalbn(t, -line.exponent) - line.ahead;
+  const double local = context_->frame.local_t(line, t) - line.ahead;
   if (!(std::abs(local) <= kFarthest)) return false;
   const dvec3 place = line.origin + local * line.direction;
   return !context_->frame.is_outside(place) && scene_.is_near(place);
+}
+
+// Most rays that have missed do.
+bool ExactRays::ends_outside(std::size_t i) const {
+  const double t_max = rays_->t_max(i);
+  if (t_max == HUGE_VAL) return true;
+  const dvec3 origin = context_->frame.space().local(rays_->origin(i)),
+              way = t_max * context_->frame.space().scale * rays_->direction(i);
+  constexpr double kPrecise = 0x1p30;  // farther off rounding counts
+  return largest_component(origin) < kPrecise && largest_component(way) < kPrecise &&
+         context_->frame.is_outside(origin + way);
 }
 
 bool ExactRays::has_end_near(std::size_t i, const LocalLine& line) const {
@@ -71,12 +82,12 @@ void ExactRays::all_hits(std::size_t i, const LocalLine& line, std::vector<Exact
 
 double ExactRays::distance(std::size_t i, const LocalLine& line, const ExactHit& about) const {
   const double at = scene_.distance(line.origin, line.direction, about.ref, about.instance, about.t);
-  return std::max(std::scalbn(line.ahead + at, line.exponent), rays_->t_min(i));
+  return std::max(context_->frame.caller_t(line, line.ahead + at), rays_->t_min(i));
 }
 
 std::optional<ExactHit> ExactRays::closest(std::size_t i, const std::optional<ExactHit>& found) const {
   const double t_min = rays_->t_min(i), t_max = rays_->t_max(i);
-  if (!found && t_min == 0 && t_max == HUGE_VAL) return std::nullopt;
+  if (!found && ends_outside(i)) return std::nullopt;
   const std::optional<LocalLine> line =
       found ? context_->frame.line(rays_->origin(i), rays_->direction(i), true) : line_of(i);
   if (!line) return std::nullopt;
@@ -85,10 +96,9 @@ std::optional<ExactHit> ExactRays::closest(std::size_t i, const std::optional<Ex
   // Floats can't tell what lies within kNear of an end of the ray.
   const double longest = largest_component(line->direction);
   const auto are_apart = [&](double t, double end) {
-    return std::scalbn(end - t, -line->exponent) * longest > ExactScene::kNear;
+    return context_->frame.local_t(*line, end - t) * longest > ExactScene::kNear;
   };
   const bool in_doubt = (hit && !(are_apart(t_min, hit->t) && hit->t < t_max)) ||
-                        (t_min != 0 && is_near(*line, t_min)) ||
                         (!(hit && are_apart(hit->t, t_max)) && is_near(*line, t_max));
   return in_doubt ? closest_anew(i, *line, hit && hit->t > t_min && hit->t < t_max ? hit->t : t_max) : hit;
 }

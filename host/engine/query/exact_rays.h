@@ -56,7 +56,7 @@ class ExactRays {
 
   // The closest hit of ray i from the one that floats have found, if any, with t in double; and found anew,
   // by a walk on the host, where that t is not between the ray's t_min and t_max or so near to t_min that
-  // floats can't tell what lies ahead, and where something is as near to a t_min that is not 0, or to t_max.
+  // floats can't tell what lies ahead, and where nothing is nearer than what lies as near to t_max.
   std::optional<ExactHit> closest(std::size_t i, const std::optional<ExactHit>& found) const;
 
  private:
@@ -65,6 +65,7 @@ class ExactRays {
   // Whether the line is too near to a surface there.
   bool is_near(const LocalLine& line, double t) const;
   bool has_end_near(std::size_t i, const LocalLine& line) const;
+  bool ends_outside(std::size_t i) const;  // of the scene's bounds, surely
   // What the ray crosses at t_min or above and below t_max, in no order; of what lies beyond `most` some may
   // be left out.
   void cross(std::size_t i, const LocalLine& line, double most, std::vector<ExactHit>& hits) const;

@@ -118,11 +118,7 @@ std::optional<DoubleRay> LocalFrame::double_ray(const dvec3& origin, const dvec3
                                                 double t_max) const {
   const std::optional<LocalLine> line = begin_line(origin, direction, true);
   if (!line) return std::nullopt;
-  // Dividing by the usual unit, a power of two, rounds as scalbn does, and needs no call.
-  const auto scaled = [&](double t) {
-    return line->exponent == exponent_ && ordinary_unit() != 0 ? t / unit_ : std::scalbn(t, -line->exponent);
-  };
-  DoubleRay ray{double_line(origin, direction), line->ahead, scaled(t_min), scaled(t_max)};
+  DoubleRay ray{double_line(origin, direction), line->ahead, local_t(*line, t_min), local_t(*line, t_max)};
   ray.line.drop_tiny();
   return ray;
 }

@@ -165,6 +165,13 @@ class LocalFrame {
   double unit() const { return unit_; }  // 2^exponent()
   // The same where it and its inverse are ordinary doubles, or 0: of scenes of any size that floats can have.
   double ordinary_unit() const { return std::isnormal(unit_) && std::isnormal(1 / unit_) ? unit_ : 0; }
+  // A t of the caller's in multiples of the line's direction, and back. (A power of two needs no call.)
+  double local_t(const LocalLine& line, double t) const {
+    return line.exponent == exponent_ && ordinary_unit() != 0 ? t / unit_ : std::scalbn(t, -line.exponent);
+  }
+  double caller_t(const LocalLine& line, double t) const {
+    return line.exponent == exponent_ && ordinary_unit() != 0 ? t * unit_ : std::scalbn(t, line.exponent);
+  }
   const LocalSpace& space() const { return space_; }
   // Whether a point, in the scene's own space, lies outside of its bounds for certain.
   bool is_outside(const dvec3& local) const {

@@ -187,8 +187,8 @@ class Scene {
   // What each ray hits first. With the t of a hit as t_min the same ray finds what comes after just that hit.
   // Which surface comes first is decided in floats about the scene's centre; t of a ray of doubles is that of
   // this surface in double, and lies between t_min and t_max. (What remains: a surface within some 4e-6 of
-  // the scene's size ahead of the start of a ray of doubles whose t_min is 0 may be passed, and of two that
-  // are as near to each other the farther one be found. count() and all() decide the former in double.)
+  // the scene's size ahead of where a ray of doubles begins may be passed, and of two that are as near to
+  // each other the farther one be found. count() and all() decide the former in double.)
   QueryReport closest(const Rays& rays, const HitsOut& out, const QueryOptions& options = {}) const;
   // 1 for each ray that hits anything between t_min and t_max, else 0. That is decided in floats, but for
   // double geometry: a surface as near as that to either end of a ray of doubles may count or not.
