@@ -173,7 +173,8 @@ PreparedScene seen_by(View view, const PreparedScene& shown, const RenderArgs& o
                       const FrameMaker::First& first = {}) {
   const scene::Framing& framing = shown.settings().framing;
   const bool in_studio = framing.studio.has_value();
-  if (in_studio && o.view.transparent) view.background = {0, 0, 0};
+  if (in_studio && o.view.transparent && shown.settings().sky.kind == scene::SkyKind::none)
+    view.background = {0, 0, 0};  // in place of the studio's backdrop
   const bool takes_over =
       framing.camera || framing.lights || framing.illuminance > 0 || view.side || view.ortho_width == 0.0;
   if (first && takes_over) return shown.seen_after(first(), view, o.render.width, o.render.height);

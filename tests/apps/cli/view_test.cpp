@@ -210,6 +210,16 @@ TEST_F(ViewTest, ATransparentPictureBeforeASkyKeepsWhatMirrorsShowOfIt) {
   }
   EXPECT_GT(n_clear, 1000u);
   EXPECT_GT(n_whole, 300u);
+
+  folder.put("studio.json", R"({"background": {"type": "gradient", "stops": [
+      {"height": -1, "color": [1, 0.8, 0.3]}, {"height": 1, "color": [0, 0.1, 1]}]}, "objects": [
+      {"type": "sphere", "center": [0, 0, 0], "radius": 1, "material": {"color": 0.2, "reflect": 0.7}}]})");
+  const image::Image in_studio = rendered("studio.json", {"--samples=4"}),
+                     cut = rendered("studio.json", transparent);
+  for (std::size_t i = 0; i < cut.pixels.size(); ++i)
+    if (cut.alpha[i] == 1) {
+      ASSERT_EQ(cut.pixels[i], in_studio.pixels[i]) << i;
+    }
 }
 
 TEST_F(ViewTest, TheBackgroundIsTheColourAskedFor) {
